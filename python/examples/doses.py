@@ -29,25 +29,14 @@ plt.savefig("doses.png")
 # end of snippet
 
 # snippet: bands
-times, edges = np.linspace(0, 72, 145), np.linspace(0, 8, 401)
-
-
-def counts(values):
-    """How many patients are in each bin at each time: what is kept of a chunk, whatever its size."""
-    drug = values["drug_sample"][values["status"] == my.status_names.index("success")]
-    return np.stack([np.histogram(column, edges)[0] for column in drug.T]).ravel()
-
-
 body = {"clearance": my.normal(5, 1), "body": my.normal(40, 6), "absorption": my.uniform(0.4, 1.2)}
+times = np.linspace(0, 72, 145)
 patients = my.study(model, body, draws=20_000, seed=1, time=(0, 72), samples=times, maximum_step=1,
                     keep=dict(end=[], samples=False, random=False),
                     reduce=[my.reduce.mean("drug_sample"),
-                            my.reduce.total("counts", "drug_sample", times.size * (edges.size - 1), counts)])
+                            my.reduce.quantiles("drug_sample", [0.05, 0.5, 0.95], my.linspace(0, 8, 401))])
 result = patients.run()
-share = np.cumsum(np.reshape(result["counts"], (times.size, -1)), axis=1)
-share = share / share[:, -1:]
-middle = 0.5 * (edges[1:] + edges[:-1])
-low, median, high = ([np.interp(p, s, middle) for s in share] for p in (0.05, 0.5, 0.95))
+low, median, high = result["drug_sample_quantiles"]
 
 plt.figure()
 plt.fill_between(times, low, high, alpha=0.3, label="90 % of patients")

@@ -18,7 +18,7 @@ from .errors import Error
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-__all__ = ["histogram", "minimum", "maximum", "mean", "total"]
+__all__ = ["histogram", "histograms", "maximum", "mean", "minimum", "quantiles", "total"]
 
 
 class Reduction:
@@ -49,12 +49,28 @@ class _Values(Axis):
         return _core.values(list(self.arguments))
 
 
+def _edges(edges: Axis | npt.ArrayLike) -> Axis:
+    return edges if isinstance(edges, Axis) else _Values("values", *np.asarray(edges, dtype=float).tolist())
+
+
 def histogram(variable: str, edges: Axis | npt.ArrayLike) -> Reduction:
     """How many values lie between neighbouring edges, as numpy.histogram: "x_end_histogram" along "x_end_bin"; and
     "x_end_outside", how many lie below, above, and are not finite."""
-    if not isinstance(edges, Axis):
-        edges = _Values("values", *np.asarray(edges, dtype=float).tolist())
-    return Reduction("histogram_of", _variable(variable), edges)
+    return Reduction("histogram_of", _variable(variable), _edges(edges))
+
+
+def histograms(variable: str, edges: Axis | npt.ArrayLike) -> Reduction:
+    """A histogram for each phase or sample: "x_sample_histograms" along "sample" and "x_sample_histograms_bin"; and
+    "x_sample_histograms_outside"."""
+    return Reduction("histograms_of", _variable(variable), _edges(edges))
+
+
+def quantiles(variable: str, quantiles: npt.ArrayLike, edges: Axis | npt.ArrayLike) -> Reduction:
+    """Quantiles, numbers from 0 to 1, for each phase or sample: "x_sample_quantiles", the quantile first, as bands of
+    percentiles over time. They are found by a histogram, to the width of a bin; NaN where one lies below the first edge
+    or above the last one."""
+    wanted = np.atleast_1d(np.asarray(quantiles, dtype=float)).tolist()
+    return Reduction("quantiles_of", _variable(variable), wanted, _edges(edges))
 
 
 def minimum(variable: str) -> Reduction:

@@ -158,7 +158,8 @@ class Run(Mapping):
     def _last_values(self, some_kinds: Iterable[str]) -> dict[str, Array]:
         """The components of some kinds by name."""
         return {name: self._ensemble.array(kind, c)
-                for kind in some_kinds for c, name in enumerate(self._components.names[kind])}
+                for kind in some_kinds for c, name in enumerate(self._components.names[kind])
+                if name not in self._components.hidden}
 
     @property
     def states(self) -> dict[str, Array]:

@@ -83,6 +83,8 @@ class SbmlModel(Model):
     have as its name; `units` has the file's units by component or output, as texts, and `time_unit`
     that of time."""
 
+    is_from_a_file = True
+
     def __init__(self, semantics: Semantics, name: str, reduce: bool = False) -> None:
         states = semantics.states()
         equations: dict[Any, Any] = {q.symbol: semantics.slope(q) for q in states}

@@ -21,6 +21,7 @@ from .inputs import Along, by_name, numbers, whole, whole_numbers
 from .mass_matrix import check_method
 from .methods import default, fixed_step, method_type
 from .options import Options, SolveArguments
+from .per_phase import prepared
 from .progress import ProgressDisplay
 from .run import Interrupted, Run
 from .sensitivities import WithSensitivities, note
@@ -269,8 +270,7 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
         raise Error(f"the model is a {type(model).__name__}: make it by myriad.model(...), as in "
                     "myriad.solve(myriad.model({x: v, v: -x}), ...)")
     chosen = default if method is None else method
-    if sensitivities is not None:
-        model = WithSensitivities(model, sensitivities)
+    model = prepared(model) if sensitivities is None else WithSensitivities(model, sensitivities)
     components = Components(model)
     given, domain, count = _gather(components, sweep, start, time, size)
     if isinstance(model, WithSensitivities):

@@ -27,6 +27,7 @@ from .inputs import by_name, numbers, only, whole
 from .kinds import recorded as recorded_kinds
 from .methods import default, fixed_step, method_type
 from .options import Options, StudyArguments
+from .per_phase import prepared
 from .progress import ProgressDisplay
 from .reduce import Reduction
 from .run import Interrupted
@@ -79,6 +80,7 @@ class Study:
         chosen = default if method is None else method
         if chosen in fixed_step and options.step is None:
             raise Error(f"{chosen} takes fixed steps: give step=")
+        model = prepared(model)
         components = self._components = Components(model)
         samples = options.samples
         times: Any = samples.get("times", ()) if isinstance(samples, Mapping) else samples
@@ -241,7 +243,7 @@ class Study:
     def _set_kept(self, made: _core.Study, components: Components, keep: Any, anything_else: bool) -> None:
         if keep is None:
             keep = {} if anything_else else {
-                "end": components.of(recorded_kinds)}
+                "end": [name for name in components.of(recorded_kinds) if name not in components.hidden]}
         elif not hasattr(keep, "items"):
             keep = {"end": keep}
         only(keep, _keep_choices, "keep=")

@@ -329,6 +329,8 @@ class XppModel(Model):
     """A model from an .ode file. `outputs` are expressions by name that a run computes; `time` are the ends of the time
     domain, `settings` what stands behind @ by name, and `sets` values by component of each `set`."""
 
+    is_from_a_file = True
+
     def __init__(self, file: _File, name: str) -> None:
         parts = file.parts
         self._taken: dict[str, str] = {}

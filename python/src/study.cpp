@@ -328,6 +328,8 @@ void bind_study(nb::module_& m) {
     m.def("normal", &normal);
     nb::class_<ensemble_reduction>(m, "Reduction");
     m.def("histogram_of", &histogram_of);
+    m.def("histograms_of", &histograms_of);
+    m.def("quantiles_of", &quantiles_of);
     for (const auto& [name, make] : studies::named_reductions)
         m.def(name, [reduction = make](const std::string& variable) { return reduction(variable); });
     m.def("sum_of", &sum_by_python);

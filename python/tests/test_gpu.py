@@ -240,6 +240,14 @@ def test_generated_instances_have_the_bits_of_those_that_the_host_lays_out():
     listed = my.study(my.model(equations), {k: begin["k_end"]}, start={x: begin["x_0_end"], v: begin["v_0_end"]},
                       **call).run(device="cuda")
     mean = [my.reduce.mean("x_end"), my.reduce.histogram("x_end", my.linspace(-2, 2, 9))]
+    samples = np.linspace(0, 6, 5)
+    by_device = [my.study(my.model(equations, **blocks), draws=5000, time=(0, 6), samples=samples,
+                          method="dormand_prince_5", rtol=1e-9, keep=dict(samples=True, end=[]),
+                          reduce=my.reduce.histograms("x_sample", my.linspace(-2, 2, 9))).run(device=device)
+                 for device in ("cuda", "cpu")]
+    for made in by_device:
+        counted = [np.histogram(column, np.linspace(-2, 2, 9))[0] for column in made["x_sample"].T]
+        assert np.array_equal(made["x_sample_histograms"], counted)
     for devices, chunk in (("cuda", None), (all_gpus(), 170)):
         made = my.study(my.model(equations, **blocks), draws=5000, reduce=mean, **call).run(device=devices, chunk=chunk)
         assert made.complete and all(np.array_equal(made[n], listed[n]) for n in ("x_end", "v_end", "k_end"))

@@ -394,11 +394,16 @@ assert same(listed.run(device="cuda"), generated(200).run(device="cuda"), names)
 def test_reductions_of_a_study_are_those_of_the_cpu(run):
     run(GENERATED + """
 reductions = lambda: [my.reduce.mean("x_end"), my.reduce.minimum("x_end"), my.reduce.maximum("x"),
-                      my.reduce.histogram("x_end", my.linspace(-2, 2, 11)), my.reduce.mean("x")]
+                      my.reduce.histogram("x_end", my.linspace(-2, 2, 11)), my.reduce.mean("x"),
+                      my.reduce.histograms("x", my.linspace(-2, 2, 11)),
+                      my.reduce.quantiles("x", [0, 0.5, 1], my.linspace(-2, 2, 401))]
 made = lambda **more: generated(700, phases=3, record=[x], reduce=reductions(), **more)
 for device in ("cuda", ["cuda", "cuda:1"]):
     result = made().run(device=device, chunk=64)
     assert np.array_equal(result["x_end_histogram"], np.histogram(result["x_end"], np.linspace(-2, 2, 11))[0])
+    of_each = [np.histogram(c, np.linspace(-2, 2, 11))[0] for c in result["x"].T]
+    assert np.array_equal(result["x_histograms"], of_each) and len(of_each) == 3
+    assert np.abs(result["x_quantiles"][1] - np.median(result["x"], axis=0)).max() <= 0.01
     assert result["x_end_minimum"] == result["x_end"].min()
     assert np.array_equal(result["x_maximum"], result["x"].max(axis=0))
     assert np.allclose(result["x_end_mean"], result["x_end"].mean(), rtol=1e-14)

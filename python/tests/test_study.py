@@ -164,6 +164,23 @@ def test_reductions_are_numpys():
     assert "x" not in alone.run().names
 
 
+def test_histograms_and_quantiles_of_each_sample():
+    edges, shares = np.linspace(-2, 2, 401), [0.05, 0.5, 0.95]
+    result = my.study(duffing(), {k: my.uniform(0.2, 0.3), B: 0.3}, draws=500, start={x: my.normal(0, 0.1), v: 0},
+                      time=(0, 5), samples=np.linspace(0, 5, 6), method="dormand_prince_5", keep=dict(samples=True),
+                      reduce=[my.reduce.histograms("x_sample", edges), my.reduce.quantiles("x_sample", shares, edges)]
+                      ).run(chunk=77)
+    samples = result["x_sample"]
+    assert samples.shape == (500, 6)
+    counted = [np.histogram(column, edges)[0] for column in samples.T]
+    np.testing.assert_array_equal(result["x_sample_histograms"], counted)
+    assert result["x_sample_histograms_outside"].tolist() == [[0, 0, 0]] * 6
+    exact = np.quantile(samples, shares, axis=0, method="inverted_cdf")
+    assert np.abs(result["x_sample_quantiles"] - exact).max() <= 0.01 * (1 + 1e-9)  # a bin's width
+    with pytest.raises(my.Error, match=r"a quantile of x_sample is 50 \(must be from 0 to 1\): 0.5 is the median"):
+        my.study(duffing(), grid(), reduce=my.reduce.quantiles("x_sample", 50, edges), **call)
+
+
 def test_failures_are_statuses():
     model = my.model({x: my.sqrt(k) * x})
     result = my.study(model, {k: np.linspace(-2, 2, 5)}, start={x: 1}, time=(0, 1), reduce=my.reduce.mean("x_end"),

@@ -405,18 +405,37 @@ void study_file::read_reductions(any_study& study) {
     root_.with("reduce", [&](const toml_value& v, const std::string& path) {
         for (const toml_value* const item : items_in(v)) {
             section from(*item, path);
-            const toml_value* const edges = from.find("edges");
             bool has_any = false;
-            from.with("histogram_of", [&](const toml_value& names, const std::string& key) {
-                if (edges == nullptr)
-                    throw wrong(names, key, "a histogram needs edges: write edges = {linspace = [-1, 1, 101]}");
-                has_any = true;
-                const axis_values all = axis_in(*edges, from.full("edges"));
-                for (const std::string& name : texts_in(names, key))
-                    placed(*edges, from.full("edges"), [&] { study.reduce(histogram_of(name, all)); });
+            std::string known;
+            const toml_value* const edges = from.find("edges");
+            const toml_value* const quantiles = from.find("quantiles");
+            using with_edges = std::function<ensemble_reduction(const std::string&, const axis_values&)>;
+            const auto by_histogram = [&](const char* key, const with_edges& make) {
+                known += message(known.empty() ? "" : ", ", key);
+                from.with(key, [&](const toml_value& names, const std::string& full_key) {
+                    if (edges == nullptr)
+                        throw wrong(names, full_key,
+                                    "a histogram needs edges: write edges = {linspace = [-1, 1, 101]}");
+                    has_any = true;
+                    const axis_values all = axis_in(*edges, from.full("edges"));
+                    for (const std::string& name : texts_in(names, full_key))
+                        placed(*edges, from.full("edges"), [&] { study.reduce(make(name, all)); });
+                });
+            };
+            by_histogram("histogram_of", histogram_of);
+            by_histogram("histograms_of", histograms_of);
+            bool has_quantiles = false;
+            by_histogram("quantiles_of", [&](const std::string& name, const axis_values& all) {
+                if (quantiles == nullptr)
+                    throw wrong(*item, from.full("quantiles_of"),
+                                "needs quantiles: write quantiles = [0.05, 0.5, 0.95]");
+                has_quantiles = true;
+                return quantiles_of(name, numbers_in(*quantiles, from.full("quantiles")), all);
             });
-            if (edges != nullptr && !has_any) throw wrong(*edges, from.full("edges"), "are for histogram_of alone");
-            std::string known = "histogram_of";
+            if (edges != nullptr && !has_any)
+                throw wrong(*edges, from.full("edges"), "are for histogram_of, histograms_of and quantiles_of alone");
+            if (quantiles != nullptr && !has_quantiles)
+                throw wrong(*quantiles, from.full("quantiles"), "are for quantiles_of alone");
             for (const auto& [key, make] : studies::named_reductions) {
                 known += message(", ", key);
                 from.with(key, [&, reduction = make](const toml_value& names, const std::string& full_key) {

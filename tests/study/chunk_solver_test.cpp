@@ -50,6 +50,8 @@ content check_where(Describe&& describe) {
 }
 void reduce_all(any_study& s, const std::string& name, const axis_values& edges) {
     s.reduce(histogram_of(name, edges));
+    s.reduce(histograms_of(name, edges));
+    s.reduce(quantiles_of(name, {0.05, 0.5, 0.95}, edges));
     s.reduce(minimum_of(name));
     s.reduce(maximum_of(name));
     s.reduce(mean_of(name));

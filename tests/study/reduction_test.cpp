@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Reductions of made-up columns: their values, and that these do not depend on chunks.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -74,6 +75,48 @@ TEST_CASE("A histogram puts numbers at and next to an edge into the right bin", 
         CHECK(made_up(at).first_of(histogram_of("x", edges)) == expected);
     }
 }
+TEST_CASE("Histograms of each phase count its values alone", "[reduction]") {
+    made_up data({0.5, 10, 1.5, -1, 1.7, not_a_number, 0.1, 0.1}, 2);
+    data.fail(3);
+    const auto found = data.reduce(histograms_of("x", values({0, 1, 2, 20})), 3);
+    CHECK(found[0] == std::vector<double>{1, 2, 0, 0, 0, 1});
+    CHECK(found[1] == std::vector<double>{0, 0, 0, 1, 0, 1});
+    const made_up one({0.5, 1.5, 7});
+    CHECK(one.reduce(histograms_of("x", linspace(0, 2, 3)), 2) == one.reduce(histogram_of("x", linspace(0, 2, 3)), 2));
+}
+TEST_CASE("Quantiles spread a bin's values over it, and are NaN outside the edges", "[reduction]") {
+    const auto quantiles = [](const made_up& of, std::vector<double> which, const axis_values& edges) {
+        return of.first_of(quantiles_of("x", std::move(which), edges));
+    };
+    // Of 1 and 3 instances in bins of unequal width, a quarter lies below the edge between them.
+    const made_up four({0.9, 1.1, 1.2, 4});
+    CHECK(quantiles(four, {0, 0.125, 0.25, 0.5, 1}, values({0, 1, 4})) == std::vector<double>{0, 0.5, 1, 2, 4});
+    // A bin that is empty holds no quantile.
+    CHECK(quantiles(made_up({0.5, 2.5}), {0, 0.5, 0.75}, linspace(0, 3, 4)) == std::vector<double>{0, 1, 2.5});
+    // What lies outside counts, but has no place; what is not finite does not count.
+    const auto found = quantiles(made_up({-5, 0.5, 0.5, 5, not_a_number}), {0.1, 0.25, 0.75, 0.9}, linspace(0, 1, 2));
+    CHECK(std::isnan(found[0]));
+    CHECK(found[1] == 0);
+    CHECK(found[2] == 1);
+    CHECK(std::isnan(found[3]));
+    CHECK(std::isnan(quantiles(made_up({not_a_number}), {0.5}, linspace(0, 1, 2))[0]));
+    // The first quantile of each phase comes first.
+    CHECK(quantiles(made_up({0.5, 2.5, 0.5, 2.5}, 2), {0.5, 1}, linspace(0, 3, 4)) ==
+          std::vector<double>{0.5, 2.5, 1, 3});
+}
+TEST_CASE("Quantiles lie in the bin of the sorted value that they are", "[reduction]") {
+    std::mt19937_64 random(5);
+    std::normal_distribution<double> normal;
+    std::vector<double> all(1001);
+    for (double& value : all) value = normal(random);
+    const std::vector<double> which{0.001, 0.05, 0.3, 0.5, 0.95, 0.999};
+    const auto found = made_up(all).first_of(quantiles_of("x", which, linspace(-5, 5, 201)));
+    std::sort(all.begin(), all.end());
+    for (std::size_t i = 0; i < which.size(); ++i) {
+        const double exact = all[static_cast<std::size_t>(std::ceil(which[i] * 1001)) - 1];
+        CHECK(std::fabs(found[i] - exact) <= 0.05 * (1 + 1e-12));  // a bin's width
+    }
+}
 TEST_CASE("Extrema and means are of each phase, and leave failed instances and NaN out", "[reduction]") {
     made_up data({1, 10, 2, not_a_number, 3, 30, -100, 1000}, 2);
     data.fail(3);
@@ -124,7 +167,9 @@ TEST_CASE("Reductions have the same bits whatever the chunks are", "[reduction]"
         sums[1] += static_cast<double>(chunk.size());
     });
     for (const ensemble_reduction& r :
-         {histogram_of("x", linspace(-1e3, 1e19, 50)), minimum_of("x"), maximum_of("x"), mean_of("x"), user}) {
+         {histogram_of("x", linspace(-1e3, 1e19, 50)), histograms_of("x", linspace(-1e3, 1e19, 50)),
+          quantiles_of("x", {0.1, 0.5}, linspace(-1e3, 1e19, 50)), minimum_of("x"), maximum_of("x"), mean_of("x"),
+          user}) {
         const auto whole = data.reduce(r, 1000);
         for (const std::size_t chunk : std::vector<std::size_t>{1, 7, 512, 999}) CHECK(data.reduce(r, chunk) == whole);
     }
@@ -133,6 +178,10 @@ TEST_CASE("Reductions have the same bits whatever the chunks are", "[reduction]"
 TEST_CASE("Mistakes with reductions are refused with what is wrong", "[reduction]") {
     CHECK_THAT(message_of([] { (void)histogram_of("x", values({1, 1})); }), Contains("do not increase"));
     CHECK_THAT(message_of([] { (void)histogram_of("x", values({1})); }), Contains("two or more edges"));
+    CHECK_THAT(message_of([] { (void)histograms_of("x", values({1})); }), Contains("two or more edges"));
+    CHECK_THAT(message_of([] { (void)quantiles_of("x", {}, linspace(0, 1, 2)); }), Contains("none is given"));
+    for (const double q : {-0.1, 1.1, not_a_number})
+        CHECK_THAT(message_of([&] { (void)quantiles_of("x", {0.5, q}, linspace(0, 1, 2)); }), Contains("from 0 to 1"));
     CHECK_THAT(message_of([] { (void)sum_of("", {}, 1, [](auto&, auto) {}); }), Contains("a name"));
     CHECK_THAT(message_of([] { (void)sum_of("s", {}, 1, nullptr); }), Contains("no function"));
     const made_up data({1, 2});

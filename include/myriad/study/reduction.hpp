@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Reductions over the instances of a study: a histogram, an extremum, a mean, or a sum of the user's. Host code only.
+// Reductions over the instances of a study: histograms, quantiles, an extremum, a mean, or a sum of the user's. Host
+// code only.
 #pragma once
 
 #include <cstdint>
@@ -79,6 +80,15 @@ private:
 /// above, and are not finite or missing. All phases or samples of an instance are counted. Throws `error` unless there
 /// are two or more edges, and they increase.
 [[nodiscard]] ensemble_reduction histogram_of(std::string_view variable, const axis_values& edges);
+/// The same for each phase or sample alone: "x_sample_histograms", with dimensions "sample" and
+/// "x_sample_histograms_bin", and "x_sample_histograms_outside".
+[[nodiscard]] ensemble_reduction histograms_of(std::string_view variable, const axis_values& edges);
+/// Quantiles for each phase or sample, as bands of percentiles over time: variable "x_sample_quantiles", whose first
+/// dimension "x_sample_quantile" has the given numbers from 0 to 1. They are found by a histogram, as if the values in
+/// a bin were spread over it evenly, and so to the width of a bin; NaN where one lies below the first edge or above the
+/// last one. Throws `error` as `histogram_of`, and for other numbers.
+[[nodiscard]] ensemble_reduction quantiles_of(std::string_view variable, std::vector<double> quantiles,
+                                              const axis_values& edges);
 /// The smallest value, for each phase or sample: "x_end_minimum"; NaN if there is none.
 [[nodiscard]] ensemble_reduction minimum_of(std::string_view variable);
 /// The largest value, for each phase or sample: "x_end_maximum"; NaN if there is none.

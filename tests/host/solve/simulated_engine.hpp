@@ -177,10 +177,13 @@ public:
             if (how.kind == reduction_kind::statuses || is_failure(statuses[i])) continue;
             for (std::int64_t j = 0; j < all.inner; ++j) {
                 const double value = value_at(all, i, j);
-                if (how.kind == reduction_kind::histogram)
-                    ++word(
-                        place_in_histogram(value, how.edges.data(), static_cast<std::int64_t>(how.edges.size()) - 1));
-                if (how.kind == reduction_kind::histogram || !is_finite_number(value)) continue;
+                if (how.kind == reduction_kind::histogram || how.kind == reduction_kind::histograms) {
+                    const auto bins = static_cast<std::int64_t>(how.edges.size()) - 1;
+                    const std::int64_t which = how.kind == reduction_kind::histograms ? j : 0;
+                    ++word(which * (bins + 3) + place_in_histogram(value, how.edges.data(), bins));
+                    continue;
+                }
+                if (!is_finite_number(value)) continue;
                 if (how.kind == reduction_kind::sum) {
                     const digits_of_number d = digits_of(value);
                     for (int k = 0; k < 3; ++k) word(j * (sum_digits + 1) + d.first + k) += d.digit[k];

@@ -36,7 +36,7 @@ struct reduce_arguments {
     reduction_kind kind;
     const double* edges;
     std::int64_t bins;
-    bool in_shared_memory;  // the counts of a histogram
+    bool in_shared_memory;  // the counts of one histogram
     unsigned long long* to;
 };
 

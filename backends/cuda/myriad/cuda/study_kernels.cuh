@@ -89,31 +89,38 @@ private:
 
 extern __shared__ unsigned long long reduced_in_block[];
 
-MYRIAD_STUDY_KERNEL void reduce_values(const __grid_constant__ reduce_arguments a) {
-    const bool is_histogram = a.kind == reduction_kind::histogram;
-    const auto skipped = [&](std::int64_t i) { return is_failure(a.how[i]); };
-    if (is_histogram) {
-        const std::int64_t words = a.bins + 3;
-        auto* const counts = reinterpret_cast<unsigned*>(reduced_in_block);
-        if (a.in_shared_memory) {
-            for (std::int64_t w = threadIdx.x; w < words; w += blockDim.x) counts[w] = 0;
-            __syncthreads();
-        }
-        for (std::int64_t i = thread_number(); i < a.all.size; i += all_threads()) {
-            if (skipped(i)) continue;
-            for (std::int64_t j = 0; j < a.all.inner; ++j) {
-                const std::int64_t place = detail::place_in_histogram(detail::value_at(a.all, i, j), a.edges, a.bins);
-                if (a.in_shared_memory) {
-                    atomicAdd(counts + place, 1u);
-                } else {
-                    atomicAdd(a.to + place, 1ull);
-                }
+/// Adds inner values [from, to) of the instances of this block's threads to a histogram.
+__device__ inline void count_values(const reduce_arguments& a, std::int64_t from, std::int64_t to,
+                                    unsigned long long* histogram) {
+    const std::int64_t words = a.bins + 3;
+    auto* const counts = reinterpret_cast<unsigned*>(reduced_in_block);
+    if (a.in_shared_memory) {
+        for (std::int64_t w = threadIdx.x; w < words; w += blockDim.x) counts[w] = 0;
+        __syncthreads();
+    }
+    for (std::int64_t i = thread_number(); i < a.all.size; i += all_threads()) {
+        if (is_failure(a.how[i])) continue;
+        for (std::int64_t j = from; j < to; ++j) {
+            const std::int64_t place = detail::place_in_histogram(detail::value_at(a.all, i, j), a.edges, a.bins);
+            if (a.in_shared_memory) {
+                atomicAdd(counts + place, 1u);
+            } else {
+                atomicAdd(histogram + place, 1ull);
             }
         }
-        if (!a.in_shared_memory) return;
-        __syncthreads();
-        for (std::int64_t w = threadIdx.x; w < words; w += blockDim.x)
-            if (counts[w] != 0) atomicAdd(a.to + w, static_cast<unsigned long long>(counts[w]));
+    }
+    if (!a.in_shared_memory) return;
+    __syncthreads();
+    for (std::int64_t w = threadIdx.x; w < words; w += blockDim.x)
+        if (counts[w] != 0) atomicAdd(histogram + w, static_cast<unsigned long long>(counts[w]));
+    __syncthreads();
+}
+
+MYRIAD_STUDY_KERNEL void reduce_values(const __grid_constant__ reduce_arguments a) {
+    if (a.kind == reduction_kind::histogram) return detail::count_values(a, 0, a.all.inner, a.to);
+    if (a.kind == reduction_kind::histograms) {
+        for (std::int64_t j = blockIdx.y; j < a.all.inner; j += gridDim.y)
+            detail::count_values(a, j, j + 1, a.to + j * (a.bins + 3));
         return;
     }
     if (a.kind == reduction_kind::statuses) {
@@ -135,7 +142,7 @@ MYRIAD_STUDY_KERNEL void reduce_values(const __grid_constant__ reduce_arguments 
         thread_sum sum(reduced_in_block);
         unsigned long long most = 0;
         for (std::int64_t i = thread_number(); i < a.all.size; i += all_threads()) {
-            if (skipped(i)) continue;
+            if (is_failure(a.how[i])) continue;
             const double value = detail::value_at(a.all, i, j);
             if (!detail::is_finite_number(value)) continue;
             if (is_sum) {

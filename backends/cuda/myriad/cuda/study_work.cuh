@@ -101,7 +101,13 @@ public:
         reduce_arguments a{all, how, what.kind, nullptr, 0, false, static_cast<unsigned long long*>(words_.data())};
         std::size_t shared = (sum_digits + 1) * sizeof(unsigned long long);
         dim3 blocks = blocks_for(all.size);
-        if (what.kind == reduction_kind::histogram) {
+        const bool of_each = what.kind != reduction_kind::histogram && what.kind != reduction_kind::statuses;
+        if (of_each) {  // inner value
+            constexpr std::int64_t most = 65'535;
+            blocks.y = static_cast<unsigned>(std::min(all.inner, most));
+            if (all.inner > 1) blocks.x = std::min(blocks.x, 256u);
+        }
+        if (what.kind == reduction_kind::histogram || what.kind == reduction_kind::histograms) {
             const std::size_t edges = what.edges.size() * sizeof(double);
             edges_.reserve(edges);
             MYRIAD_CUDA(cudaMemcpyAsync(edges_.data(), what.edges.data(), edges, cudaMemcpyHostToDevice, stream));
@@ -111,10 +117,6 @@ public:
             const std::size_t counts = (what.edges.size() + 2) * sizeof(unsigned);
             a.in_shared_memory = counts <= every_block_has;
             shared = a.in_shared_memory ? counts : 0;
-        } else if (what.kind != reduction_kind::statuses) {
-            constexpr std::int64_t most = 65'535;
-            blocks.y = static_cast<unsigned>(std::min(all.inner, most));
-            if (all.inner > 1) blocks.x = std::min(blocks.x, 256u);
         }
         launch(by.reduce_values, blocks, shared, stream, a);
         MYRIAD_CUDA(cudaMemcpyAsync(words.data(), words_.data(), bytes, cudaMemcpyDeviceToHost, stream));

@@ -102,12 +102,14 @@ struct device_values {
 /// A reduction over the instances of a chunk that have not failed.
 struct device_reduction {
     reduction_kind kind;
-    std::vector<double> edges = {};  ///< of a histogram
+    std::vector<double> edges = {};  ///< of histograms
     /// How many integers the result has for so many inner values.
     std::int64_t words(std::int64_t inner) const {
         switch (kind) {
             case reduction_kind::histogram:
                 return static_cast<std::int64_t>(edges.size()) + 2;
+            case reduction_kind::histograms:
+                return inner * (static_cast<std::int64_t>(edges.size()) + 2);
             case reduction_kind::sum:
                 return inner * (sum_digits + 1);
             case reduction_kind::statuses:

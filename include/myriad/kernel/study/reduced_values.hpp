@@ -26,11 +26,12 @@ struct value_array {
 
 /// What is made of them.
 enum class reduction_kind : std::int32_t {
-    histogram,  // the number in each bin, then below the first edge, above the last one, not finite or missing
-    maximum,    // the largest `ordered` number, 0 for none
-    minimum,    // the largest `ordered` number of the negative ones
-    sum,        // the digits of an exact sum, and how many numbers are in it
-    statuses,   // how many instances have each status
+    histogram,   // the number in each bin, then below the first edge, above the last one, not finite or missing
+    histograms,  // a histogram for each inner value
+    maximum,     // the largest `ordered` number, 0 for none
+    minimum,     // the largest `ordered` number of the negative ones
+    sum,         // the digits of an exact sum, and how many numbers are in it
+    statuses,    // how many instances have each status
 };
 
 /// The digits of an exact sum: numbers of 32 bits, the first of weight 2^-1074, that may be negative or larger until
