@@ -95,7 +95,7 @@ failed=0
 summary=()
 
 # The tests of preset ci that belong to step programs, by their labels.
-programs='^(benchmarks|compile_time|examples|headers|install|validation)$'
+programs='^(benchmarks|compile_time|derivatives|examples|headers|install|validation)$'
 
 # build STEP PRESET: sets `built`.
 build() {

@@ -38,7 +38,7 @@ struct used_device {
     std::mutex turn;  // of the thread that integrates
     std::atomic<bool> failed{false};
     statement why;                       // it failed
-    std::atomic<bool> exploring{false};  // a thread has its first chunk, which shows how fast it is
+    std::atomic<bool> exploring{false};  // a thread has a CPU's first chunk, which shows how fast it is
 };
 
 /// What a thread has of a chunk.
@@ -230,9 +230,9 @@ private:
     std::optional<std::int64_t> next_chunk(used_device& d, thread_work& mine) {
         for (;;) {
             if (stopping_ || d.failed || (settings_.stops && settings_.stops())) return {};
-            // The first chunk alone, as long as it is not known how fast the device is.
-            if (is_worthwhile(d, content().chunk, left()) &&
-                (sharing_.is_known(d.number) || !d.exploring.exchange(true))) {
+            // A CPU's first chunk alone, as long as it is not known how fast it is.
+            const bool may_have_two = d.where.which() != device::kind::cpu || sharing_.is_known(d.number);
+            if (is_worthwhile(d, content().chunk, left()) && (may_have_two || !d.exploring.exchange(true))) {
                 if (const auto chunk = keeper_.claim_next()) {
                     mine.begun = clock::now().time_since_epoch().count();
                     mine.rest = range_of(content(), *chunk).count;
