@@ -21,13 +21,20 @@ constexpr double clearly = 1.25;  // rates differ between chunks
 
 work_sharing::work_sharing(const std::vector<device>& devices, std::int64_t chunk, double tried_after)
     : chunk_(chunk), tried_after_(tried_after) {
+    const auto is_cpu = [](const device& d) { return d.which() == device::kind::cpu; };
+    const auto first_gpu = std::find_if_not(devices.begin(), devices.end(), is_cpu);
+    has_gpu_ = first_gpu != devices.end();
+    // To grow with its parts costs a GPU milliseconds, which it has to spare where it may be the slow one of several.
+    const bool gpus_differ = std::any_of(first_gpu, devices.end(), [&](const device& d) {
+        return !is_cpu(d) && d.description() != first_gpu->description();
+    });
     for (const device& d : devices) {
-        pace p{.is_cpu = d.which() == device::kind::cpu};
+        pace p{.is_cpu = is_cpu(d), .first_part = chunk};
         const int threads = d.threads() > 0 ? d.threads() : static_cast<int>(std::thread::hardware_concurrency());
-        p.first_part = p.is_cpu ? per_thread * std::max(threads, 1) : std::max(chunk / 8, busy_gpu);
+        if (p.is_cpu) p.first_part = per_thread * std::max(threads, 1);
+        if (!p.is_cpu && gpus_differ) p.first_part = std::max(chunk / 8, busy_gpu);
         paces_.push_back(p);
-        has_gpu_ = has_gpu_ || !p.is_cpu;
-        is_mixed_ = is_mixed_ || (devices.size() > 1 && (p.is_cpu || d.description() != devices[0].description()));
+        is_mixed_ = is_mixed_ || (devices.size() > 1 && (p.is_cpu || gpus_differ));
     }
 }
 
