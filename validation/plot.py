@@ -18,7 +18,8 @@ STYLES = {"CVODE": ("#000000", "x", ":"), "odeint cash_karp": (figures.RED, "+",
           "runge_kutta_4": ("#999999", "s", "-"),
           "cash_karp": (figures.BLUE, "o", "-"), "tsitouras_5": (figures.GREEN, "^", "-"),
           "dormand_prince_5": (figures.ORANGE, "v", "-"), "verner_7": (figures.PINK, "D", "-"),
-          "dormand_prince_8": (figures.SKY, "P", "-"), "rosenbrock_23": ("#000000", "*", "--"),
+          "dormand_prince_8": (figures.SKY, "P", "-"), "verner_9": ("#555555", "X", "-"),
+          "rosenbrock_23": ("#000000", "*", "--"),
           "rodas_5p": (figures.RED, "h", "--")}
 NAMES = {"lorenz": "Lorenz", "duffing": "Duffing", "van_der_pol": "van der Pol", "keller_miksis": "Keller–Miksis",
          "relief_valve": "relief valve", "heat": "heat conduction", "kepler": "Kepler", "timed_circle": "timed circle",
@@ -31,7 +32,8 @@ LEFT_OUT = {"bouncing_ball": "No panel for the bouncing ball:\nits flights are p
 LABELS = {"cash_karp": "Cash–Karp 5(4)", "tsitouras_5": "Tsitouras 5(4)", "runge_kutta_4": "Runge–Kutta 4, fixed steps",
           "odeint cash_karp": "Boost.odeint, Cash–Karp", "CVODE": "CVODE, Adams",
           "dormand_prince_5": "Dormand–Prince 5(4)",
-          "verner_7": "Verner 7(6)", "dormand_prince_8": "Dormand–Prince 8(5,3)", "rosenbrock_23": "Rosenbrock 2(3)",
+          "verner_7": "Verner 7(6)", "verner_9": "Verner 9(8)",
+          "dormand_prince_8": "Dormand–Prince 8(5,3)", "rosenbrock_23": "Rosenbrock 2(3)",
           "rodas_5p": "Rodas 5P"}
 
 

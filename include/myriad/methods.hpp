@@ -14,3 +14,4 @@
 #include "myriad/kernel/methods/runge_kutta_4.hpp"
 #include "myriad/kernel/methods/tsitouras_5.hpp"
 #include "myriad/kernel/methods/verner_7.hpp"
+#include "myriad/kernel/methods/verner_9.hpp"

@@ -10,7 +10,7 @@ from typing import Any, Literal, get_args
 from .errors import Error
 
 Method = Literal["runge_kutta_4", "cash_karp", "tsitouras_5", "dormand_prince_5", "verner_7", "dormand_prince_8",
-                 "rosenbrock_23", "rodas_5p"]  # of the library's list, as a test says
+                 "verner_9", "rosenbrock_23", "rodas_5p"]  # of the library's list, as a test says
 Control = Literal["pi_control", "pid_control", "rms_norm", "mixed_scale", "automatic_first_step",
                   "tolerance_per_instance"]
 methods: tuple[str, ...] = get_args(Method)  #: the names of methods
@@ -22,9 +22,9 @@ default = "tsitouras_5"  # docs/methods.md#the-default
 # What other packages call methods that are here, or whose place one takes.
 _elsewhere = {"rk45": "dormand_prince_5", "dopri5": "dormand_prince_5", "dp5": "dormand_prince_5",
               "rk23": "tsitouras_5", "bs3": "tsitouras_5", "tsit5": "tsitouras_5", "dop853": "dormand_prince_8",
-              "dp8": "dormand_prince_8", "vern7": "verner_7", "rk4": "runge_kutta_4", "radau": "rodas_5p",
-              "bdf": "rodas_5p", "lsoda": "rodas_5p", "vode": "rodas_5p", "cvode": "rodas_5p", "rodas5p": "rodas_5p",
-              "rosenbrock23": "rosenbrock_23", "rkck": "cash_karp"}
+              "dp8": "dormand_prince_8", "vern7": "verner_7", "vern9": "verner_9", "rk4": "runge_kutta_4",
+              "radau": "rodas_5p", "bdf": "rodas_5p", "lsoda": "rodas_5p", "vode": "rodas_5p", "cvode": "rodas_5p",
+              "rodas5p": "rodas_5p", "rosenbrock23": "rosenbrock_23", "rkck": "cash_karp"}
 
 
 def method_type(name: str, chosen: str | Sequence[str] = (), samples: bool = False) -> str:

@@ -47,8 +47,8 @@ class WithSensitivities(Extended):
             raise Error(f"the model has {'sensitivities' if isinstance(model, WithSensitivities) else 'tangents'} "
                         f"already{line}: give the model alone")
         if getattr(model, "mass_matrix", None) is not None:
-            raise Error(f"the model has a mass matrix{line}, with which initial values of algebraic states would not be "
-                        "independent: solve its algebraic equations in the others")
+            raise Error(f"the model has a mass matrix{line}, with which initial values of algebraic states would not "
+                        "be independent: solve its algebraic equations in the others")
         kinds_of = ("state", "parameter", "shared")
         wanted = [by] if isinstance(by, (str, Node)) else list(by)
         names = [own.component(one) for one in wanted]

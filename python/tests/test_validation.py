@@ -18,7 +18,8 @@ from validation_problems import heat, problems
 
 device = os.environ.get("MYRIAD_TEST_DEVICE", "cpu")
 pytestmark = pytest.mark.skipif(device == "cuda" and bool(_core.no_gpu()), reason="there is no GPU")
-explicit = ("runge_kutta_4", "cash_karp", "tsitouras_5", "dormand_prince_5", "verner_7", "dormand_prince_8")
+explicit = ("runge_kutta_4", "cash_karp", "tsitouras_5", "dormand_prince_5", "verner_7", "dormand_prince_8",
+            "verner_9")
 stiff = ("rosenbrock_23", "rodas_5p")
 made = {name: make() for name, make in problems.items()}
 made["heat at ten points"] = heat(10)  # as many states as the interpreter has

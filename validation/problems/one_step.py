@@ -13,7 +13,7 @@ import sys
 import tomllib
 
 METHODS = {"runge_kutta_4": "RK4", "cash_karp": "CashKarp54", "tsitouras_5": "Tsit5", "dormand_prince_5": "DP54",
-           "verner_7": "Vern7", "dormand_prince_8": "DOP853"}
+           "verner_7": "Vern7", "dormand_prince_8": "DOP853", "verner_9": "Vern9"}
 H, ANGLE = "0.5", "0.75"  # step length; at the start ln u and ln w are sine and cosine of ANGLE
 
 

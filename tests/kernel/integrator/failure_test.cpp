@@ -224,8 +224,8 @@ TEST_CASE("a right-hand side without a value beyond the state is not crept up to
 }
 TEMPLATE_TEST_CASE(
     "a slope that is NaN in a stage without weight is seen where the model makes a number of a NaN state", "",
-    myriad::cash_karp, myriad::tsitouras_5, myriad::dormand_prince_5, myriad::verner_7, myriad::dormand_prince_8,
-    myriad::rosenbrock_23, myriad::rodas_5p) {
+    myriad::cash_karp, myriad::tsitouras_5, myriad::dormand_prince_5, myriad::verner_7, myriad::verner_9,
+    myriad::dormand_prince_8, myriad::rosenbrock_23, myriad::rodas_5p) {
     check_open_cliff<TestType>();
 }
 TEMPLATE_TEST_CASE("a slope that is NaN in a stage without weight is seen in single precision, too", "",

@@ -23,6 +23,7 @@ using myriad::dormand_prince_8;
 using myriad::runge_kutta_4;
 using myriad::tsitouras_5;
 using myriad::verner_7;
+using myriad::verner_9;
 
 // A rooted tree is the sorted list of the trees that hang on its root (Hairer, Norsett, Wanner, Solving ODE I, II.2).
 struct tree {
@@ -265,6 +266,7 @@ TEST_CASE("verner_7 satisfies the order conditions to seven and not to eight") {
 TEST_CASE("dormand_prince_8 satisfies the order conditions to eight and not to nine") {
     check_solution_order<dormand_prince_8>(8);
 }
+TEST_CASE("verner_9 satisfies the order conditions to nine and not to ten") { check_solution_order<verner_9>(9); }
 
 TEST_CASE("the embedded solution of cash_karp satisfies the order conditions to four and not to five") {
     check_embedded_order<cash_karp>(4);
@@ -277,6 +279,9 @@ TEST_CASE("the embedded solution of dormand_prince_5 satisfies the order conditi
 }
 TEST_CASE("the embedded solution of verner_7 satisfies the order conditions to six and not to seven") {
     check_embedded_order<verner_7>(6);
+}
+TEST_CASE("the embedded solution of verner_9 satisfies the order conditions to eight and not to nine") {
+    check_embedded_order<verner_9>(8);
 }
 TEST_CASE("the embedded solutions of dormand_prince_8 satisfy the order conditions to five and three and not to more") {
     check_embedded_order<dormand_prince_8>(5);
@@ -296,6 +301,7 @@ TEST_CASE("the row sums of tsitouras_5 are its nodes") { check_row_sums<tsitoura
 TEST_CASE("the row sums of dormand_prince_5 are its nodes") { check_row_sums<dormand_prince_5>(); }
 TEST_CASE("the row sums of verner_7 are its nodes") { check_row_sums<verner_7>(); }
 TEST_CASE("the row sums of dormand_prince_8 are its nodes") { check_row_sums<dormand_prince_8>(); }
+TEST_CASE("the row sums of verner_9 are its nodes") { check_row_sums<verner_9>(); }
 
 TEST_CASE("runge_kutta_4 has no error estimate") {
     CHECK(runge_kutta_4::embedded_order == 0);
@@ -390,6 +396,9 @@ TEST_CASE("the interpolant of verner_7 satisfies the order conditions to six and
 TEST_CASE("the interpolant of dormand_prince_8 satisfies the order conditions to seven and not to eight") {
     check_interpolant_conditions<dormand_prince_8>(7);
 }
+TEST_CASE("the interpolant of verner_9 satisfies the order conditions to nine and not to ten") {
+    check_interpolant_conditions<verner_9>(9);
+}
 
 TEST_CASE("the interpolant of tsitouras_5 ends with the weights of the step and the slopes of both ends") {
     check_interpolant_ends<tsitouras_5>();
@@ -402,4 +411,7 @@ TEST_CASE("the interpolant of verner_7 ends with the weights of the step and the
 }
 TEST_CASE("the interpolant of dormand_prince_8 ends with the weights of the step and the slopes of both ends") {
     check_interpolant_ends<dormand_prince_8>();
+}
+TEST_CASE("the interpolant of verner_9 ends with the weights of the step and the slopes of both ends") {
+    check_interpolant_ends<verner_9>();
 }

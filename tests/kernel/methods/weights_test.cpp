@@ -115,6 +115,7 @@ TEST_CASE("weights in single precision satisfy the order conditions to two as we
     SECTION("tsitouras_5") { check_explicit<myriad::tsitouras_5>(); }
     SECTION("dormand_prince_5") { check_explicit<myriad::dormand_prince_5>(); }
     SECTION("verner_7") { check_explicit<myriad::verner_7>(); }
+    SECTION("verner_9") { check_explicit<myriad::verner_9>(); }
     SECTION("dormand_prince_8") { check_explicit<myriad::dormand_prince_8>(); }
     SECTION("rosenbrock_23") { check_rosenbrock<myriad::rosenbrock_23>(); }
     SECTION("rodas_5p") { check_rosenbrock<myriad::rodas_5p>(); }

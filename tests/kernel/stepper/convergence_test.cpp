@@ -15,6 +15,7 @@ using myriad::dormand_prince_8;
 using myriad::runge_kutta_4;
 using myriad::tsitouras_5;
 using myriad::verner_7;
+using myriad::verner_9;
 
 /// Forwards and backwards, with and without time in the right-hand side.
 template <class Method>
@@ -44,6 +45,11 @@ TEST_CASE("dormand_prince_8 has order eight") {
     check_order<dormand_prince_8, problems::oscillator>(8, 2, 16);
     check_order<dormand_prince_8, problems::log_circle>(8, 1, 2, {0.15, 0.3});
     check_order<dormand_prince_8, problems::timed_circle>(8, 0.25, 1, {0.15, 0.3});
+}
+TEST_CASE("verner_9 has order nine") {
+    check_order<verner_9, problems::oscillator>(9, 2, 16);
+    check_order<verner_9, problems::log_circle>(9, 1, 2, {0.3, 3});
+    check_order<verner_9, problems::timed_circle>(9, 0.25, 1, {0.3, 3});
 }
 
 TEST_CASE("runge_kutta_4 has order four in single precision") {

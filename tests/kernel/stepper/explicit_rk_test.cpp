@@ -28,6 +28,7 @@ using myriad::dormand_prince_8;
 using myriad::runge_kutta_4;
 using myriad::tsitouras_5;
 using myriad::verner_7;
+using myriad::verner_9;
 
 template <class R>
 constexpr R eps = std::numeric_limits<R>::epsilon();
@@ -226,6 +227,10 @@ TEST_CASE("a step of verner_7 has a local error of order eight at least") {
 TEST_CASE("a step of dormand_prince_8 has a local error of order nine") {
     check_solution_order<dormand_prince_8>(9, 1, 0.15);
 }
+TEST_CASE("a step of verner_9 has a local error of order ten at least") {
+    check_least_local_order(solution_error<verner_9, problems::log_circle>, 10, 1);
+    check_least_local_order(solution_error<verner_9, problems::timed_circle>, 10, 0.25);
+}
 
 TEST_CASE("the embedded solution of cash_karp has a local error of order five") { check_embedded_order<cash_karp>(5); }
 TEST_CASE("the embedded solution of tsitouras_5 has a local error of order five") {
@@ -240,11 +245,13 @@ TEST_CASE("the embedded solution of verner_7 has a local error of order seven") 
 TEST_CASE("the embedded solution of dormand_prince_8 has a local error of order six") {
     check_embedded_order<dormand_prince_8>(6);
 }
+TEST_CASE("the embedded solution of verner_9 has a local error of order nine") { check_embedded_order<verner_9>(9, 1); }
 
 TEST_CASE("the error estimate of cash_karp has order five") { check_estimate_order<cash_karp>(5); }
 TEST_CASE("the error estimate of tsitouras_5 has order five") { check_estimate_order<tsitouras_5>(5); }
 TEST_CASE("the error estimate of dormand_prince_5 has order five") { check_estimate_order<dormand_prince_5>(5); }
 TEST_CASE("the error estimate of verner_7 has order seven") { check_estimate_order<verner_7>(7, 0.5); }
+TEST_CASE("the error estimate of verner_9 has order nine") { check_estimate_order<verner_9>(9, 1); }
 TEST_CASE("the error estimates of dormand_prince_8 have orders six and four") {
     check_estimate_order<dormand_prince_8>(6);
     check_estimate_order<dormand_prince_8, myriad::detail::row_of<dormand_prince_8>::coarse_error>(4);
@@ -271,6 +278,12 @@ TEST_CASE("the interpolant of verner_7 has a local error of order seven at least
 TEST_CASE("the interpolant of dormand_prince_8 has a local error of order eight") {
     check_interpolant_order<dormand_prince_8>(8, 1, 0.15);
 }
+TEST_CASE("the interpolant of verner_9 has a local error of order ten at least") {
+    for (const double theta : {0.3, 0.5, 0.9}) {
+        check_least_local_order(interpolation_error<verner_9, problems::log_circle>(theta), 10, 1);
+        check_least_local_order(interpolation_error<verner_9, problems::timed_circle>(theta), 10, 0.25);
+    }
+}
 
 TEST_CASE("the interpolant of runge_kutta_4 hits both ends of the step") { check_ends<runge_kutta_4>(); }
 TEST_CASE("the interpolant of cash_karp hits both ends of the step") { check_ends<cash_karp>(); }
@@ -278,6 +291,7 @@ TEST_CASE("the interpolant of tsitouras_5 hits both ends of the step") { check_e
 TEST_CASE("the interpolant of dormand_prince_5 hits both ends of the step") { check_ends<dormand_prince_5>(); }
 TEST_CASE("the interpolant of verner_7 hits both ends of the step") { check_ends<verner_7>(); }
 TEST_CASE("the interpolant of dormand_prince_8 hits both ends of the step") { check_ends<dormand_prince_8>(); }
+TEST_CASE("the interpolant of verner_9 hits both ends of the step") { check_ends<verner_9>(); }
 
 TEST_CASE("the interpolant of runge_kutta_4 has the slopes of both ends of the step") {
     check_end_slopes<runge_kutta_4>();
@@ -309,6 +323,10 @@ TEST_CASE("a step of verner_7 is the textbook's") {
 TEST_CASE("a step of dormand_prince_8 is the textbook's") {
     check_textbook<dormand_prince_8, problems::log_circle>(0.3, 0.25);
     check_textbook<dormand_prince_8, problems::timed_circle>(0.7, -0.125);
+}
+TEST_CASE("a step of verner_9 is the textbook's") {
+    check_textbook<verner_9, problems::log_circle>(0.3, 0.25);
+    check_textbook<verner_9, problems::timed_circle>(0.7, -0.125);
 }
 
 TEST_CASE("the last slope of a tsitouras_5 step is the right-hand side at its end, bit for bit") {
