@@ -34,8 +34,9 @@ def draw(pyplot, numpy, table, _comments):
         column = int(numpy.searchsorted(x_starts, table["x_start"][own][0]))
         row = v_starts.size - 1 - int(numpy.searchsorted(v_starts, table["v_start"][own][0]))
         axis = axes[row][column]
-        picture = axis.imshow(away[own].reshape(phases.size, units).T, origin="lower", aspect="auto", cmap="RdBu_r", vmin=-bound, vmax=bound,
-                              extent=(phases[0] + 0.5, phases[-1] + 1.5, -0.5, units - 0.5), interpolation="none")
+        picture = axis.imshow(away[own].reshape(phases.size, units).T, origin="lower", aspect="auto", cmap="RdBu_r",
+                              vmin=-bound, vmax=bound, interpolation="none",
+                              extent=(phases[0] + 0.5, phases[-1] + 1.5, -0.5, units - 0.5))
         axis.set_title(rf"$x_{{11}}(0) = {table['x_start'][own][0]:.3g}$, $v_{{11}}(0) = "
                        rf"{table['v_start'][own][0]:.3g}$", fontsize=6, pad=2)
     figure.supxlabel("period of the forcing", fontsize=9)
