@@ -28,7 +28,8 @@ END_OF_USAGE
 
 programs=(
     duffing duffing_trajectories resonance lyapunov lyapunov_map basins bubble_response bubble_dual_frequency
-    relief_valve relief_valve_contact hybrid poincare heat_conduction overlap stiff_chemistry monte_carlo
+    coupled_duffing bubble_cluster relief_valve relief_valve_contact hybrid poincare heat_conduction overlap
+    stiff_chemistry monte_carlo
 )
 device=cpu
 if has_command nvcc && nvidia-smi -L >/dev/null 2>&1; then device=cuda; fi
