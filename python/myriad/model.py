@@ -165,6 +165,7 @@ class Model(kinds.ComponentNames):
                  finalise: ByComponent | None, generate: ByComponent | None, states: Names | None, parameters: Names,
                  shared: Names, name: str | None, stops: Stop | Sequence[Stop] = ()) -> None:
         self.line = users_line()
+        self.hidden: frozenset[str] = frozenset()  # accessories that no user has named
         self._source: str | None = None
         self._declared = self._declare(states, parameters, shared, accessories)
         self._names = self._declared  # what texts may name: later also what the equations do
