@@ -63,7 +63,7 @@ class Components:
         self.time_unit = getattr(model, "time_unit", "")
         self.constants = getattr(model, "constants", {})  # values of symbols in outputs that are no components
         self.generated = list(getattr(model, "generated", ()))  # components that the model sets in a study
-        self.hidden = getattr(model, "hidden", frozenset())  # accessories that no user has named
+        self.hidden: frozenset[str] = getattr(model, "hidden", frozenset())  # accessories that no user has named
         self.events = list(model.events)
         self.derivatives_by = list(getattr(model, "by", ()))  # components that a model has derivatives by
         self.place = {name: (kind, number) for kind in kinds.valued for number, name in enumerate(self.names[kind])}

@@ -174,6 +174,7 @@ class Model(kinds.ComponentNames):
                  shared: Names, name: str | None, stops: Stop | Sequence[Stop] = (),
                  mass_matrix: npt.ArrayLike | ByComponent | None = None) -> None:
         self.line = users_line()
+        self.hidden: frozenset[str] = frozenset()  # accessories that no user has named
         self._source: str | None = None
         self._declared = self._declare(states, parameters, shared, accessories)
         self._names = self._declared  # what texts may name: later also what the equations do

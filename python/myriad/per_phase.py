@@ -18,7 +18,7 @@ from .expression import draws, real, walk
 from .folding import constant, is_constant, value_of
 
 if TYPE_CHECKING:
-    from .expression import Node
+    from .expression import Expression, Node
     from .model import Model
 
 
@@ -34,12 +34,13 @@ def prepared(model: Any) -> Any:
 class _Parts:
     """The accessories of some expressions. `most`: how many there may be; those that save most are taken."""
 
-    def __init__(self, model: Model, rhs: list[Node], functions: list[Node], most: int) -> None:
+    def __init__(self, model: Model, rhs: list[Expression], functions: list[Expression], most: int) -> None:
         self._assigned = {t for _, assignments in model._hooks for t, _ in assignments}
         self._fixed: dict[Node, bool] = {}
-        self._rhs, self._functions = _rebuilt(rhs, self._by_reciprocal), functions
-        order = walk([*self._rhs, *functions])
-        used = {a for node in order if not self._is_stored(node) for a in node.args} | {*self._rhs, *functions}
+        self._functions = functions
+        divided = _rebuilt(rhs, self._by_reciprocal)
+        order = walk([*divided, *functions])
+        used = {a for node in order if not self._is_stored(node) for a in node.args} | {*divided, *functions}
         saved = {node: work([node]) for node in order if node in used and self._is_stored(node)}
         taken = [*model.component_names, *getattr(model, "outputs", {}), *getattr(model, "aliases", {})]
         self._accessories: dict[Node, Node] = {}
@@ -47,6 +48,8 @@ class _Parts:
             taken.append(sym.free_name(f"per_phase_{len(self._accessories) + 1}", taken))
             self._accessories[node] = sym.symbol("accessory", taken[-1])
         self.values = {accessory: node for node, accessory in self._accessories.items()}
+        # Where there was no room for a reciprocal, the division stays.
+        self._rhs = _rebuilt(rhs, lambda node: self._by_reciprocal(node, self._accessories))
 
     def _is_fixed(self, node: Node) -> bool:
         """Whether an expression follows from constants that nothing changes."""
@@ -58,13 +61,14 @@ class _Parts:
                     self._fixed[n] = n.op not in draws and all(self._fixed[a] for a in n.args)
         return self._fixed[node]
 
-    def _by_reciprocal(self, node: Node) -> Node:
-        """A division by what is fixed as a multiplication."""
+    def _by_reciprocal(self, node: Node, among: dict[Node, Node] | None = None) -> Node:
+        """A division by what is fixed as a multiplication; by reciprocals among these alone, if they are given."""
         if node.op != "divide" or self._is_fixed(node.args[0]) or not self._is_fixed(node.args[1]):
             return node
         value, by = node.args
         if not is_constant(by):
-            return ex.make("multiply", (value, ex.make("divide", (constant(1.0), by))))
+            reciprocal = ex.make("divide", (constant(1.0), by))
+            return ex.make("multiply", (value, reciprocal)) if among is None or reciprocal in among else node
         inverse = 1 / value_of(by) if value_of(by) else 0.0
         return ex.make("multiply", (value, constant(inverse))) if 1e-300 < abs(inverse) < 1e300 else node
 
@@ -73,21 +77,22 @@ class _Parts:
         return self._is_fixed(node) and node.type == real and bool(node.args) and not is_constant(node) and not (
             node.op == "negate" and not node.args[0].args) and any(n.op == "symbol" for n in walk([node]))
 
-    def rhs(self) -> list[Node]:
+    def rhs(self) -> list[Expression]:
         """The equations, with the accessories."""
         return self._with_accessories(self._rhs)
 
-    def functions(self) -> list[Node]:
+    def functions(self) -> list[Expression]:
         """The other expressions."""
         return self._with_accessories(self._functions)
 
-    def _with_accessories(self, roots: list[Node]) -> list[Node]:
+    def _with_accessories(self, roots: list[Expression]) -> list[Expression]:
         return _rebuilt(roots, lambda node: node, self._accessories)
 
 
-def _rebuilt(roots: list[Node], changed: Callable[[Node], Node], known: dict[Node, Node] | None = None) -> list[Node]:
+def _rebuilt(roots: list[Expression], changed: Callable[[Node], Any],
+             known: dict[Node, Node] | None = None) -> list[Expression]:
     """Expressions with each operation as `changed` gives it, and those that are known replaced."""
-    made: dict[Node, Node] = {}
+    made: dict[Node, Any] = {}
     for node in walk(roots):
         if known and node in known:
             made[node] = known[node]

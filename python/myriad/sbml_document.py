@@ -39,7 +39,7 @@ def read(source: Any) -> tuple[Any, Any]:
         path = os.fspath(source)
         if not os.path.isfile(path):
             raise Error(f"there is no file '{path}': give the path of a file of SBML, or its text")
-        document = libsbml.readSBMLFromFile(path)
+        document = libsbml.readSBMLFromFile(os.path.abspath(path))  # external models are looked for beside it
     else:
         document = libsbml.readSBMLFromString(text)
     _check(libsbml, document)

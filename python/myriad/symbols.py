@@ -59,15 +59,21 @@ def check_name(name: Any, what: str) -> str:
     return name
 
 
+def _is_allowed(name: str) -> bool:
+    try:
+        check_name(name, "a component")
+    except Error:
+        return False
+    return True
+
+
 def free_name(name: str, taken: Collection[str]) -> str:
-    """The name, or else the first like it, with an underscore or a number, that a component can have and that is not
-    taken."""
+    """The name, or else the first like it, with an underscore, a number or x_ before it, that a component can have and
+    that is not taken."""
+    if not _is_allowed(name) and not _is_allowed(f"{name}_"):
+        name = f"x_{name}"  # as all names that begin like C's M_PI
     for candidate in (name, f"{name}_", *(f"{name}_{i}" for i in range(2, 10000))):
-        try:
-            check_name(candidate, "a component")
-        except Error:
-            continue
-        if candidate not in taken:
+        if candidate not in taken and _is_allowed(candidate):
             return candidate
     raise Error(f"no name for a component is left that is like '{name}'")
 

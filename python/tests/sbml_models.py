@@ -428,8 +428,9 @@ cases = [
     # Ids
     Case("ids that are words of C++ or of the library", [
         variable("double", 1), variable("state", 2), variable("_x", 3), variable("a__b", 4), variable("t", 5),
-        rate("double", "state"), rate("a__b", "_x * t")],
-        {"double": lambda t: 1 + 2 * t, "a__b": lambda t: 4 + 15 * t, "_x": lambda t: 3 + 0 * t}),
+        variable("M_G_0", 6), rate("double", "state"), rate("a__b", "_x * t"), rate("M_G_0", "state")],
+        {"double": lambda t: 1 + 2 * t, "M_G_0": lambda t: 6 + 2 * t, "a__b": lambda t: 4 + 15 * t,
+         "_x": lambda t: 3 + 0 * t}),
     Case("ids that differ by underscores", [variable("x", 1), variable("x_", 2), variable("_x", 3), rate("x", "x_"),
                                             rate("_x", "x")],
          {"x": lambda t: 1 + 2 * t, "_x": lambda t: 3 + t + t**2}),

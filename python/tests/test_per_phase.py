@@ -10,7 +10,7 @@ import myriad as my  # noqa: E402
 from myriad import _core  # noqa: E402
 from myriad.cpp import work  # noqa: E402
 from myriad.per_phase import prepared  # noqa: E402
-from sbml_models import compartment, document, event, parameter, reaction, species, variable  # noqa: E402
+from sbml_models import compartment, document, event, parameter, rate, reaction, species, variable  # noqa: E402
 
 _hill = [compartment("c", 2), species("S", concentration=3), species("P", concentration=0),
          parameter("Vmax", 1.5), parameter("K", 0.7), parameter("n", 2.5), parameter("enzyme", 0.4),
@@ -95,10 +95,17 @@ def test_a_model_is_interpreted_by_as_small_an_interpreter_as_before():
     count = _core.tape_sizes["small"]["state"]
     parts = [parameter(f"{p}{i}", 1.5) for p in "ab" for i in range(count)]
     rates = [variable(f"x{i}", 1) for i in range(count)]
-    from sbml_models import rate
     model = my.read_sbml(document([*parts, *rates, *(rate(f"x{i}", f"-x{i} * pow(a{i}, b{i})")
                                                      for i in range(count))]))
     made = prepared(model)
     assert len(model.parameters) <= _core.tape_sizes["small"]["parameter"] and len(made.accessories) == room
     run = my.solve(model, time=(0, 1), interpreted=True)
     np.testing.assert_allclose(run["x7"], np.exp(-1.5**1.5), rtol=1e-5)
+
+
+def test_divisions_stay_where_there_is_no_room_for_the_reciprocals():
+    count = _core.tape_sizes["large"]["accessory"] + 5
+    parts = [parameter(f"a{i}", 2) for i in range(count)] + [variable(f"x{i}", 1) for i in range(count)]
+    model = my.read_sbml(document([*parts, *(rate(f"x{i}", f"-x{i} / a{i}") for i in range(count))]))
+    made = prepared(model)
+    assert len(made.accessories) == count - 5 and work(made.rhs) == work(model.rhs)

@@ -302,3 +302,22 @@ def test_a_text_in_antimony_is_a_model():
     np.testing.assert_allclose(run["total"], 10, rtol=1e-8)
     with pytest.raises(my.Error, match="no Antimony"):
         my.read_antimony("S1 -> -> S2")
+
+
+def test_external_models_are_found_beside_a_file_given_by_a_relative_path(tmp_path, monkeypatch):
+    (tmp_path / "models").mkdir()
+    inner = sbml_models.document([parameter("k", 0.5), variable("x", 1), rate("x", "-k * x")])
+    (tmp_path / "models" / "inner.xml").write_text(inner)
+    name = "http://www.sbml.org/sbml/level3/version1/comp/version1"
+    (tmp_path / "models" / "outer.xml").write_text(
+        f'''<?xml version="1.0" encoding="UTF-8"?>
+<sbml xmlns="http://www.sbml.org/sbml/level3/version2/core" xmlns:comp="{name}" level="3" version="2"
+      comp:required="true">
+  <model id="outer"><comp:listOfSubmodels><comp:submodel comp:id="A" comp:modelRef="M"/></comp:listOfSubmodels></model>
+  <comp:listOfExternalModelDefinitions>
+    <comp:externalModelDefinition comp:id="M" comp:source="inner.xml"/>
+  </comp:listOfExternalModelDefinitions>
+</sbml>''')
+    monkeypatch.chdir(tmp_path)
+    run = my.solve(my.read_sbml("models/outer.xml"), time=(0, 2), rtol=1e-9, interpreted=True)
+    assert run["A__x"][0] == pytest.approx(np.exp(-1), rel=1e-7)
