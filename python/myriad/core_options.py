@@ -6,6 +6,7 @@ from __future__ import annotations
 import dataclasses
 import inspect
 import itertools
+import math
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
@@ -84,7 +85,7 @@ def make_options(components: Components, size: int, given: Options) -> tuple[_co
         if row["type"] in ("whole number", "number"):
             if value is not None:  # which stands for the default
                 setattr(made, name, whole(value, called, _largest) if row["type"] == "whole number" else
-                        real(value, called))
+                        _given(real(value, called), called))
         elif name in true_choices:
             other, = (c for c in row["choices"] if c != true_choices[name])
             setattr(made, name, true_choices[name] if value else other)
@@ -100,6 +101,14 @@ def finish_options(made: _core.Options, given: Options, components: Components, 
     made.relative_tolerance = per_state(given.rtol, components, "rtol", n_state)
     made.absolute_tolerance = per_state(given.atol, components, "atol", n_state)
     _set_events(made, given.events, components, n_event)
+
+
+def _given(value: float, name: str) -> float:
+    """An option that is given. In the core NaN stands for one that is not, and other options refuse it in words of
+    their own."""
+    if math.isnan(value) and _fields[name].default is None:
+        raise Error(f"{name} is nan: give a number, or leave it out")
+    return value
 
 
 def _choice(value: Any, name: str, choices: list[str]) -> str:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Collection, Iterable
 from typing import TYPE_CHECKING, Any
 
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from .grid import Sweep
-    from .hints import Array, ByComponent
+    from .hints import Array, ByComponent, Path
 
 
 class Along:
@@ -83,9 +84,26 @@ def whole(value: Any, name: str, largest: int = _largest) -> int:
 
 def real(value: Any, name: str) -> float:
     try:
-        return float(value)
+        if not isinstance(value, (bool, np.bool_, str, bytes, bytearray)):
+            return float(value)
     except (TypeError, ValueError, OverflowError):
-        raise Error(f"{name} is {value!r}: give a number") from None
+        pass
+    raise Error(f"{name} is {value!r}: give a number")
+
+
+def path_text(path: Path) -> str:
+    """A path as the core takes it: a text of characters, so that messages can name it."""
+    try:
+        text = os.fsdecode(path)
+    except TypeError:
+        raise Error(f"the path is {path!r}: give a text, or a pathlib.Path") from None
+    if not text:
+        raise Error("the path is empty: name a folder or a file, such as \"results\"")
+    try:
+        text.encode()
+    except UnicodeEncodeError:
+        raise Error(f"the path {text!r} has bytes that are no characters of UTF-8: give another path") from None
+    return text
 
 
 def by_name(value: ByComponent | None, name: str, example: str) -> ByComponent:

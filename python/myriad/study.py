@@ -23,7 +23,7 @@ from .core_options import finish_options, make_options, options_of, takes_option
 from .errors import Error
 from .expression import Node
 from .grid import Sweep
-from .inputs import by_name, numbers, only, whole
+from .inputs import by_name, numbers, only, path_text, real, whole
 from .kinds import recorded as recorded_kinds
 from .methods import default, fixed_step, method_type
 from .options import Options, StudyArguments
@@ -310,7 +310,7 @@ class Study:
             raise Error(f"check is {check!r}: give \"sizes\" or \"checksums\"")
         if arithmetic not in ("same", "any"):
             raise Error(f"arithmetic is {arithmetic!r}: give \"same\" or \"any\"")
-        folder = "" if store is None else os.path.abspath(os.fspath(store))
+        folder = "" if store is None else os.path.abspath(path_text(store))
         if device == "auto" and executor is not None:
             device = "cpu:1"
         devices, no_gpu = device_names(device, self._interpreted)
@@ -318,7 +318,7 @@ class Study:
         try:
             if not folder and self._has_store:  # from an earlier run
                 self._build(*self._given[:2], **self._given[2])
-            self._core.set_store(folder, float(expiry), check == "checksums", arithmetic == "any")
+            self._core.set_store(folder, real(expiry, "expiry"), check == "checksums", arithmetic == "any")
             self._has_store = bool(folder)
             if executor is not None:
                 return _ExecutedRun(self, executor, devices, chunk, folder or None, show).run()

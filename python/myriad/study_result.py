@@ -13,6 +13,7 @@ import numpy as np
 from . import _core
 from .components import name_of, unknown
 from .errors import Error
+from .inputs import path_text
 from .parts import blocks, read_part
 from .symbols import time
 
@@ -193,7 +194,9 @@ class StudyResult(Mapping):
         """Writes netCDF-4 by the package netCDF4 or h5netcdf, whichever is there, part by part, so that memory is
         bounded. The file replaces one of that name when it is whole."""
         dataset_of = _netcdf_package()
-        path = os.path.realpath(path)
+        path = os.path.realpath(path_text(path))
+        if "\\" in path:
+            raise Error(f"the path {path!r} has a backslash, which netCDF takes for a slash: give another path")
         temporary = f"{path}.part-{os.getpid()}"
         try:
             with dataset_of(temporary, "w") as file:
@@ -236,7 +239,7 @@ class StudyResult(Mapping):
 
     def to_csv(self, path: Path) -> None:
         """Writes text with commas, a line for each instance, as the C++ library does; for small results."""
-        self._results.write_csv(os.fspath(path))
+        self._results.write_csv(path_text(path))
 
 
 _fill_values = {"float64": np.float64(np.nan), "float32": np.float32(np.nan), "int64": np.int64(-(1 << 63) + 2),
@@ -267,10 +270,10 @@ def _netcdf_package() -> Any:
 
 def open_study(folder: Path) -> StudyResult:
     """The results of a study in its store, also while it runs. Raises `Error` if there is none."""
-    folder = os.path.abspath(os.fspath(folder))
+    folder = os.path.abspath(path_text(folder))
     return StudyResult(_core.open_store(folder), folder)
 
 
 def verify(folder: Path) -> list[Damage]:
     """Reads all that is stored in a folder and compares checksums; returns what is damaged as a list of `Damage`."""
-    return [Damage(*d) for d in _core.verify_store(os.path.abspath(os.fspath(folder)))]
+    return [Damage(*d) for d in _core.verify_store(os.path.abspath(path_text(folder)))]

@@ -100,3 +100,38 @@ def test_tables_of_uneven_lists_end_in_an_error_of_numpy():
     with pytest.raises(my.Error, match="an interpolation"):
         my.interpolate(my.time, ["a", "b"], [0, 1])
     assert my.table("W", [fractions.Fraction(1, 4)]).values[0] == 0.25
+
+
+def test_text_is_taken_for_a_number_where_an_option_is_one():
+    for name in ("step", "minimum_step", "maximum_step", "growth_limit", "time_limit", "phase_length"):
+        for value in ("2", b"2", bytearray(b"2"), True):
+            with pytest.raises(my.Error, match=f"^{name} is .*: give a number$"):
+                solve(**{name: value})
+        for value in (2, np.float32(2), np.array(2), fractions.Fraction(2)):
+            solve(**{name: value})
+
+
+def test_a_step_of_nan_is_taken_for_none():
+    with pytest.raises(my.Error, match="^step is nan: give a number, or leave it out$"):
+        solve(step=np.nan)
+    assert solve(step=None)["x"][0] == solve()["x"][0]
+
+
+def test_paths_of_the_wrong_kind_end_in_an_error_of_the_binding(tmp_path):
+    result = study({k: [1, 2]}).run()
+    for use in (study({k: [1, 2]}).run, my.open_study, my.verify, result.to_csv, result.to_netcdf):
+        for path, message in (("", "the path is empty"), (b"", "the path is empty"), (5, "the path is 5: give a text"),
+                              (b"results\xff", "has bytes that are no characters of UTF-8"),
+                              ("results\udcff", "has bytes that are no characters of UTF-8")):
+            with pytest.raises(my.Error, match=message):
+                use(path)
+    folder = tmp_path / "of bytes"
+    study({k: [1, 2]}).run(bytes(folder))
+    assert my.verify(bytes(folder)) == [] and my.open_study(bytes(folder)).complete
+
+
+def test_a_netcdf_file_with_a_backslash_in_its_name_is_written_elsewhere(tmp_path):
+    pytest.importorskip("netCDF4")
+    with pytest.raises(my.Error, match="has a backslash, which netCDF takes"):
+        study({k: [1, 2]}).run().to_netcdf(tmp_path / "back\\slash.nc")
+    assert not list(tmp_path.iterdir())

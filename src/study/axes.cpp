@@ -48,7 +48,8 @@ void check_finite(const char* function, double value) {
 axis_values linspace(double first, double last, std::int64_t size) {
     check_finite("linspace", first);
     check_finite("linspace", last);
-    check_finite("linspace", last - first);
+    require(std::isfinite(last - first), "linspace from ", first, " to ", last, " is longer than the largest number",
+            host::cure, "bring the ends closer together");
     check_size("linspace", size);
     return {axis_values::kind::linear, first, last, size};
 }

@@ -344,6 +344,7 @@ std::string contents_json(const layout& content) {
 }
 
 bool same_json(std::string_view a, std::string_view b) {
+    if (a.find('\0') != a.npos) return false;  // where the parser here ends, and others refuse the text
     const json read = json::parse(a, nullptr, false);
     return !read.is_discarded() && read == json::parse(b, nullptr, false);
 }

@@ -45,6 +45,11 @@ std::vector<double> all_of(const axis_values& v) {
 
 }  // namespace
 
+TEST_CASE("linspace with ends too far apart is not said to be given infinity", "[axes]") {
+    CHECK_THAT(message_of([] { (void)linspace(-1.7e308, 1.7e308, 5); }),
+               Contains("linspace from -1.7e+308 to 1.7e+308 is longer than the largest number"));
+}
+
 TEST_CASE("linspace has the values of numpy.linspace, and both ends", "[axes]") {
     CHECK(all_of(linspace(0.2, 0.3, 4)) ==
           std::vector{0.2, 0.2 + 1 * (0.3 - 0.2) / 3, 0.2 + 2 * ((0.3 - 0.2) / 3), 0.3});

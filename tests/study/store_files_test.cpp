@@ -121,6 +121,20 @@ TEST_CASE("coordinates and results of another study are not read in silence") {
     }
 }
 
+TEST_CASE("what follows a zero byte in a file of a store is not read, and not seen by verify") {
+    tests::temporary_folder folder;
+    const std::string run = folder / "run";
+    run_synthetic(run, synthetic_layout());
+    for (const std::string& name : files_of(run)) {
+        INFO(name);
+        const std::string text = tests::text_of(run + '/' + name);
+        put(run + '/' + name, text + '\0');
+        CHECK(verified(run) != "");
+        put(run + '/' + name, text);
+        CHECK(verified(run) == "");
+    }
+}
+
 TEST_CASE("a file of a store that takes the place of any other is seen by verify, and no read is wrong") {
     tests::temporary_folder folder;
     const std::string run = folder / "run";
