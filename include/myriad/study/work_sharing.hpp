@@ -21,7 +21,7 @@ namespace myriad::studies::inline MYRIAD_ABI {
 class work_sharing {
 public:
     /// `tried_after`: seconds that the GPUs have taken, or have left, before a CPU beside them is tried.
-    work_sharing(const std::vector<device>& devices, std::int64_t chunk, double tried_after = 0.1);
+    work_sharing(const std::vector<device>& devices, std::int64_t chunk, double tried_after = 0.25);
 
     /// Instances, of the rest of a chunk, that a device is to integrate before it asks again; `left`: all that are not
     /// done in the study.
