@@ -4,6 +4,7 @@ ensemble in every iteration."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from statistics import NormalDist
 from typing import TYPE_CHECKING, Any
 
@@ -245,7 +246,7 @@ def fit(model: AnyModel, data: Any, *, free: ByComponent, starts: int | ByCompon
     Further arguments are those of `solve`: method, rtol, atol, device ... All starts are integrated as one ensemble,
     with sensitivities, in every iteration."""
     problem = LeastSquares(model, data, free, sweep, start, begin, sigma, options)
-    if hasattr(starts, "items"):
+    if isinstance(starts, Mapping):
         given = by_component(starts, "starts=")
         missing = [name for name in problem.names if name not in given]
         if missing or len(given) != len(problem.names):

@@ -10,8 +10,10 @@ import numpy as np
 
 from . import kinds
 from .components import Components, by_component, unknown
+from .core_options import per_state
 from .errors import Error
 from .inputs import by_name, real
+from .options import Options
 from .solve import solve
 from .statuses import status_names
 from .symbols import time
@@ -78,10 +80,21 @@ class LeastSquares:
         for name in ("samples", "record", "phases", "sensitivities", "size"):
             if name in options:
                 raise Error(f"a fit chooses {name}= itself: leave it out")
-        self._options = dict(options)
+        self._options = {**options, "atol": self._tolerances(options)}
         self._begin = real(begin, "begin")
         self._read(data, sigma)
         self._last: tuple[Any, ...] = ()
+
+    def _tolerances(self, options: Mapping[str, Any]) -> dict[str, float]:
+        """Absolute tolerances of states, and of their derivatives, whose product with a free component is to be as
+        accurate as the state."""
+        known = options.get("options") or Options()
+        given = options.get("atol", known.atol)
+        states = self._components.states
+        values = per_state(given, self._components, "atol", len(states))
+        of_states = dict(zip(states, values * len(states) if len(values) == 1 else values))
+        return {**of_states, **{f"{c}_by_{f.name}": tolerance / max(1.0, abs(f.least), abs(f.most))
+                                for f in self.free for c, tolerance in of_states.items()}}
 
     def _read(self, data: Any, sigma: Any) -> None:
         """Takes times, values and their standard deviations."""
@@ -161,9 +174,12 @@ class LeastSquares:
         if len(states) == len(self.data):
             samples["states"] = states
         initial = {name: value for name, value in given.items() if name in self._components.states}
+        options = self._options
+        if not sensitivities:
+            options = {**options, "atol": {c: t for c, t in options["atol"].items() if c in self._components.states}}
         return solve(self.model, {**self._sweep, **{n: v for n, v in given.items() if n not in initial}},
                      start={**self._start, **initial}, time=(self._begin, float(self.times[-1])), samples=samples,
-                     sensitivities=self.names if sensitivities else None, **self._options)
+                     sensitivities=self.names if sensitivities else None, **options)
 
     def evaluate(self, values: Values) -> tuple[Array, Array]:
         """Residuals and their derivatives of sets in rows, [set, residual] and [set, residual, free component]. NaN

@@ -9,19 +9,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .components import Components, unknown
+from .components import Components, by_component, unknown
 from .core_options import per_state
 from .derivatives import derivatives
 from .errors import Error, at, users_line
 from .expression import Node, symbols_of
 from .extended import Extended
+from .inputs import real
 from .statuses import status_names
 from .symbols import time
 
 if TYPE_CHECKING:
-    from .cpp_model import CppModel
-    from .hints import Array, Component, SomeComponents
-    from .model import Model
+    from .hints import AnyModel, Array, Component, SomeComponents
     from .options import Options
     from .run import Run
 
@@ -30,7 +29,7 @@ __all__ = ["with_sensitivities", "WithSensitivities", "Sensitivities"]
 _not_controlled = 1e30  # a tolerance that no error exceeds
 
 
-def with_sensitivities(model: Model | CppModel, by: SomeComponents) -> WithSensitivities:
+def with_sensitivities(model: AnyModel, by: SomeComponents) -> WithSensitivities:
     """The model with the derivatives of its solution by some of its components: initial states, parameters and shared
     values. `solve(model, ..., sensitivities=[k, x])` makes one."""
     return WithSensitivities(model, by)
@@ -40,7 +39,7 @@ class WithSensitivities(Extended):
     """A model with sensitivities. The derivative of state or accessory c by component k is the state or accessory
     `<c>_by_<k>`, that of the time at which the last phase ended the accessory `time_by_<k>`."""
 
-    def __init__(self, model: Model | CppModel, by: SomeComponents) -> None:
+    def __init__(self, model: AnyModel, by: SomeComponents) -> None:
         line = at(users_line())
         own = Components(model)
         if isinstance(model, Extended):
@@ -97,9 +96,9 @@ class WithSensitivities(Extended):
         have = [n for n in names if components.place.get(n, ("",))[0] in ("state", "accessory")]
         return [*listed, *(f"{n}_by_{k}" for k in self.by for n in have if f"{n}_by_{k}" in components.place)]
 
-    def options(self, given: Options, components: Components, values: Mapping[str, Any], control: bool) -> Options:
+    def options(self, given: Options, components: Components, control: bool) -> Options:
         """The options of a call of the model alone as those of the model with sensitivities: their records, samples and
-        tolerances. `values` of components are what absolute tolerances are relative to."""
+        tolerances."""
         record, samples = given.record, given.samples
         if record is not None:
             chosen = dict(record) if isinstance(record, Mapping) else {"states": record}
@@ -109,17 +108,21 @@ class WithSensitivities(Extended):
             record = chosen
         if isinstance(samples, Mapping) and "states" in samples:
             samples = {**samples, "states": self._derivatives_of(samples["states"], components)}
-        own = Components(self.model)
-        rtol = self._tolerances(given.rtol, own, "rtol", [1.0] * len(self.by), control)
-        atol = self._tolerances(given.atol, own, "atol", [_scale(values.get(k)) for k in self.by], control)
+        rtol = self._tolerances(given.rtol, components, "rtol", control)
+        atol = self._tolerances(given.atol, components, "atol", control)
         return dataclasses.replace(given, record=record, samples=samples, rtol=rtol, atol=atol)
 
-    def _tolerances(self, value: Any, own: Components, name: str, scales: Sequence[float], control: bool
-                    ) -> list[float]:
-        of_states = per_state(value, own, name, self.n_original)
+    def _tolerances(self, value: Any, components: Components, name: str, control: bool) -> list[float]:
+        """Those of the model's states, and of their derivatives the same, or those that a dict names."""
+        named = by_component(value, name) if hasattr(value, "items") else {}
+        derivatives_of = components.states[self.n_original:]
+        own = {c: t for c, t in named.items() if c not in derivatives_of} if hasattr(value, "items") else value
+        of_states = per_state(own, Components(self.model), name, self.n_original)
         if len(of_states) == 1:
             of_states = of_states * self.n_original
-        return [*of_states, *(t * scale if control else _not_controlled for scale in scales for t in of_states)]
+        of_derivatives = dict(zip(derivatives_of, of_states * len(self.by)))
+        of_derivatives.update((c, real(t, f"{name} of '{c}'")) for c, t in named.items() if c in of_derivatives)
+        return [*of_states, *(t if control else _not_controlled for t in of_derivatives.values())]
 
     def check_start(self, components: Components, given: Collection[str]) -> None:
         """Refuses initial values that follow from components that there are derivatives by."""
@@ -129,15 +132,6 @@ class WithSensitivities(Extended):
             if components.follows(name, self.by, given):
                 raise Error(f"the initial value of '{name}' follows from components that sensitivities are by: give it "
                             "in start=")
-
-
-def _scale(value: Any) -> float:
-    """The absolute tolerance of a derivative by a component over that of the state: as small as one over its largest
-    value, so that their product is as accurate as the state."""
-    if value is None or hasattr(value, "address"):
-        return 1.0
-    largest = np.max(np.abs(np.asarray(value, float)), initial=1.0)
-    return float(1 / largest) if np.isfinite(largest) else 1.0
 
 
 class Sensitivities(Mapping[Any, Any]):

@@ -275,7 +275,7 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
     given, domain, count = _gather(components, sweep, start, time, size)
     if isinstance(model, WithSensitivities):
         model.check_start(components, _names_given(components, sweep, start))
-        given_options = model.options(given_options, components, given, sensitivity_control)
+        given_options = model.options(given_options, components, sensitivity_control)
     samples = given_options.samples is not None
     method_type(chosen, control, samples)  # refuses what does not exist
     if chosen in fixed_step and given_options.step is None:

@@ -47,6 +47,17 @@ def test_without_error_control_the_solution_is_that_without_sensitivities():
     assert (my.solve(spring, {k: K, B: 0.5}, sensitivities=[k], **call)[x] != alone[x]).any()
 
 
+def test_sensitivities_may_have_tolerances_of_their_own():
+    call = {"start": {x: 1, v: 0}, "time": (0, 2), "sensitivities": [k, x, B]}
+    loose = my.solve(spring, {k: K, B: 0.5}, atol={v: 1e-8}, **call)
+    strict = my.solve(spring, {k: K, B: 0.5}, atol={v: 1e-8, "x_by_k": 1e-13}, rtol={"x_by_k": 1e-13}, **call)
+    assert (strict.steps() > loose.steps()).all()
+    alone = my.solve(spring, {k: K[1], B: 0.5}, atol={v: 1e-8}, **call)
+    np.testing.assert_array_equal(alone.sensitivity[x][0], loose.sensitivity[x][1])  # whatever else is in the call
+    with pytest.raises(my.Error, match="'x_by_z' is no state"):
+        my.solve(spring, {k: K, B: 0.5}, atol={"x_by_z": 1e-8}, **call)
+
+
 def test_an_event_that_ends_a_phase_has_the_sensitivity_of_its_time():
     # A ball thrown up lands at T = (v0 + sqrt(v0^2 + 2 g x0)) / g with speed sqrt(v0^2 + 2 g x0).
     g, lands = my.parameter("g"), my.accessory("landed")

@@ -54,15 +54,15 @@ struct state_directions {
     static constexpr moving_component at = {moving::state, 0};
 };
 
-/// Where the derivatives of accessories in direction i begin among the accessories.
-template <class Model>
-constexpr int first_moving_accessory(int i) {
-    return (1 + i) * n_accessory<Model>;
-}
-
 }  // namespace myriad::detail
 
 namespace myriad::detail::inline MYRIAD_TARGET {
+
+/// Where the derivatives of accessories in direction i begin among the accessories.
+template <class Model>
+MYRIAD_FUNCTION int first_moving_accessory(int i) {
+    return (1 + i) * n_accessory<Model>;
+}
 
 /// The first `size` components of a vector, or those from `from` on.
 template <int size, class S, int n>

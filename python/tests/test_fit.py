@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: MIT
+"""Fits of models to data, compared with SciPy's and with linear regression."""
+
+import numpy as np
+import pytest
+
+import myriad as my
+
+x, w = my.states("x w")
+k, a, B, unused = my.parameters("k a B unused")
+model = my.model({x: B - a * k * x, w: a * k * x - 0.3 * w}, parameters=[unused], name="two_pools")
+others = {a: 1, unused: 0}
+times = np.linspace(0.5, 8, 30)
+
+
+def measured(noise=0.01, seed=1, **values):
+    """Data of the model for k = 0.7, B = 0.4, x(0) = 2, with errors."""
+    run = my.solve(model, {k: 0.7, B: 0.4, **others, **values}, start={x: 2, w: 0}, time=(0, 8), samples=times,
+                   rtol=1e-10, atol=1e-10)
+    errors = noise * np.random.default_rng(seed).standard_normal((2, times.size))
+    return {"t": times, x: run[x][0] + errors[0], w: run[w][0] + errors[1]}
+
+
+free = {k: (1e-2, 1e2, "log"), B: (0, 5), x: (0, 10)}
+usual = {"start": {w: 0}, "sweep": others}
+
+
+def test_a_fit_from_many_starts_is_scipys():
+    optimize = pytest.importorskip("scipy.optimize")
+    fit = my.fit(model, measured(), free=free, starts=20, **usual)
+    problem = fit.problem
+    scipys = optimize.least_squares(problem.residuals, [1, 1, 1], problem.jacobian, bounds=problem.bounds, ftol=1e-12,
+                                    xtol=1e-12, gtol=1e-12)
+    assert fit.status == ["converged"] * 20 and fit.notes == []
+    np.testing.assert_allclose(list(fit.best.values()), scipys.x, rtol=1e-6)
+    assert fit.loss[fit.index] == pytest.approx(scipys.cost, rel=1e-6)
+    assert fit.loss.shape == (20,) and fit.values["k"].shape == (20,)
+    # within four standard errors of what the data were made with
+    for name, true in (("k", 0.7), ("B", 0.4), ("x", 2.0)):
+        assert abs(fit.best[name] - true) < 4 * fit.standard_errors[name]
+        low, high = fit.confidence(0.9999)[name]
+        assert low < true < high
+
+
+def test_the_jacobian_is_that_of_central_differences():
+    problem = my.least_squares(model, measured(), free=free, sigma={x: 0.5, w: 2}, rtol=1e-10, atol=1e-10, **usual)
+    at = np.array([0.9, 0.3, 1.5])
+    steps = 1e-4 * np.eye(3)
+    differences = np.stack([(problem.residuals(at + d) - problem.residuals(at - d)) / 2e-4 for d in steps], axis=1)
+    np.testing.assert_allclose(problem.jacobian(at), differences, rtol=1e-6, atol=1e-6)  # d^2 and rounding over d
+    gradient = [(problem.loss(at + d) - problem.loss(at - d)) / 2e-4 for d in steps]
+    np.testing.assert_allclose(problem.gradient(at), gradient, rtol=1e-5)
+    several = problem.residuals(np.stack([at, 2 * at]))
+    np.testing.assert_array_equal(several[0], problem.residuals(at))
+
+
+def test_noiseless_data_give_back_what_made_them():
+    fit = my.fit(model, measured(noise=0), free=free, starts=5, rtol=1e-10, atol=1e-10, **usual)
+    np.testing.assert_allclose(list(fit.best.values()), [0.7, 0.4, 2], rtol=1e-7)
+
+
+def test_a_fit_that_ends_at_a_bound_says_so():
+    fit = my.fit(model, measured(), free={**free, B: (0.5, 5)}, starts=5, **usual)
+    assert fit.at_bound == ["B"] and fit.best["B"] == 0.5
+    assert any("ended at a bound of B" in note for note in fit.notes)
+
+
+def test_intervals_of_a_straight_line_are_those_of_linear_regression():
+    # With k = 0, x = x(0) + B t.
+    rng = np.random.default_rng(3)
+    values = 1 + 0.5 * times + 0.1 * rng.standard_normal(times.size)
+    values[4] = np.nan
+    there = ~np.isnan(values)
+    fit = my.fit(model, {"t": times, x: values}, free={x: (-10, 10), B: (-10, 10)}, sweep={**others, k: 0},
+                 start={w: 0}, starts=3)
+    design = np.stack([np.ones(there.sum()), times[there]], axis=1)
+    best, (squares,), *_ = np.linalg.lstsq(design, values[there], rcond=None)
+    np.testing.assert_allclose([fit.best["x"], fit.best["B"]], best, rtol=1e-7)
+    covariance = np.linalg.inv(design.T @ design) * squares / (there.sum() - 2)
+    np.testing.assert_allclose(fit.covariance, covariance, rtol=1e-6)
+    np.testing.assert_allclose(fit.fisher_information, np.linalg.inv(covariance), rtol=1e-6)
+    low, high = fit.confidence(0.95)["B"]
+    assert (high - low) / 2 == pytest.approx(1.959964 * np.sqrt(covariance[1, 1]), rel=1e-5)
+
+
+def test_parameters_without_influence_and_mere_products_are_named():
+    fit = my.fit(model, measured(), free={k: (0.1, 10), a: (0.1, 10), unused: (-1, 1)}, sweep={B: 0.4},
+                 start={x: 2, w: 0}, starts=3)
+    assert fit.without_influence == ["unused"]
+    assert any("depends on unused" in note for note in fit.notes)
+    assert any("combinations of k, a alone" in note for note in fit.notes)
+    assert fit.best["k"] * fit.best["a"] == pytest.approx(0.7, rel=0.05)
+    assert np.isnan(fit.standard_errors["k"])
+    assert "nan" in str(fit)
+
+
+good = {"t": [1, 2, 3], x: [1, 1, 1]}
+
+
+@pytest.mark.parametrize("data, changed, message", [
+    ({x: [1, 1, 1]}, {}, "data has no times"),
+    ({"t": [1, 2, 3]}, {}, "data has times alone"),
+    ({"t": [1, 2, 3], "z": [1, 1, 1]}, {}, "'z' is no state or output of the model"),
+    ({"t": [1, 2], x: [1, 1, 1]}, {}, "3 values of 'x' and 2 times"),
+    ({"t": [-1, 2, 3], x: [1, 1, 1]}, {}, "data has the time -1, and the model begins at 0"),
+    ({"t": [1, np.nan, 3], x: [1, 1, 1]}, {}, "data has the time nan"),
+    ({"t": [0, 0, 0], x: [1, 1, 1]}, {}, "all times of data are 0"),
+    ({"t": [1, 2, 3], x: [1, np.inf, 1]}, {}, "infinite values"),
+    ([1, 2, 3], {}, "data is a list"),
+    (good, {"free": {}}, "free= names no component"),
+    (good, {"free": {k: 1}}, "the bounds of 'k' are 1"),
+    (good, {"free": {k: (2, 1)}}, "the bounds of 'k' are 2 and 1"),
+    (good, {"free": {k: (0, 1, "log")}}, "the lower bound of 'k' is 0, and its logarithm varies"),
+    (good, {"free": {"z": (0, 1)}}, "'z' is no component that a fit can determine"),
+    (good, {"sweep": {k: 1}}, "'k' is free and has a value"),
+    (good, {"sweep": {B: [1, 2]}}, "'B' has several values"),
+    (good, {"sigma": {w: 1}}, "'w' is no quantity in data"),
+    (good, {"sigma": 0}, "sigma of 'x' has values that are not positive"),
+    (good, {"samples": 3}, "a fit chooses samples= itself"),
+    (good, {"starts": 0}, "starts is 0"),
+    (good, {"starts": {k: [20]}}, "values outside the bounds"),
+    (good, {"starts": {B: [20]}}, "starts= has B: give values of k"),
+])
+def test_what_does_not_fit_together_is_refused(data, changed, message):
+    with pytest.raises(my.Error, match=message):
+        my.fit(model, data, **{"free": {k: (0.1, 10)}, "start": {x: 1, w: 0}, **changed})
+
+
+def test_starts_without_a_solution_are_counted_and_none_at_all_is_an_error():
+    # x = 1 / (1/x(0) - k t) is infinite at t = 1 / (k x(0)).
+    explosive = my.model({x: k * x * x}, name="explosive")
+    t = np.array([0.5, 1.0])
+    data = {"t": t, x: 1 / (2 - 0.5 * t)}
+    call = {"start": {x: 0.5}, "rtol": 1e-9, "atol": 1e-9}
+    fit = my.fit(explosive, data, free={k: (0.1, 10)}, starts={k: [0.2, 8.0]}, **call)
+    assert fit.status == ["converged", "failed"] and fit.loss[1] == np.inf
+    assert fit.best["k"] == pytest.approx(0.5, rel=1e-7)
+    assert any("1 of 2 starts had no solution" in note for note in fit.notes)
+    with pytest.raises(my.Error, match="no start of the fit has a solution"):
+        my.fit(explosive, data, free={k: (0.1, 10)}, starts={k: [8.0]}, **call)
