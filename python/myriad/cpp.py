@@ -378,10 +378,14 @@ class Writer:
         by_name = {s.value[1]: s for s in states}
         order = [by_name[name] for name in model.states if name in by_name]
         column = {i: model.states.index(s.value[1]) for i, s in enumerate(order)}
+        most = max(len(model.states) ** 2 // 2, _most_derivatives)
+        depends_on = dependencies(model.rhs, order)
+        if sum(map(len, depends_on)) > most:  # told before all derivatives are made, which takes seconds
+            return [], []
         found = derivatives(model.rhs, order)
-        rows = found if found is not None else dependencies(model.rhs, order)
+        rows = found if found is not None else depends_on
         entries = [(row, i) for row, columns in enumerate(rows) for i in sorted(columns)]
-        if not entries or len(entries) > len(model.states) ** 2 // 2 and len(entries) > _most_derivatives:
+        if not entries:
             return [], []
         lines = [f"// {self.matrix([(row, column[i]) for row, i in entries])}"]
         if all(s.value != ("built-in", "time") for s in symbols_of(model.rhs)):

@@ -98,3 +98,16 @@ def test_values_of_a_run_are_given_for_all_units():
                    record=dict(states=[x]))
     np.testing.assert_allclose(run["x_0"][:, 0], np.exp(-rates), rtol=1e-7)
     np.testing.assert_allclose(run["x_1"][:, 0], np.exp(-4.0) * np.ones(3), rtol=1e-7)
+
+
+def test_a_full_coupling_of_many_units_is_written_without_making_all_derivatives(monkeypatch):
+    from myriad import cpp
+
+    def refuse(*_):
+        raise AssertionError("16384 derivatives are made, and left out")
+
+    units = my.units(128)
+    angle = units.state("angle")
+    model = my.model({angle: units.full_coupling("A", np.ones((128, 128))) @ np.sin(angle)})
+    monkeypatch.setattr(cpp, "derivatives", refuse)
+    assert "jacobian" not in model.cpp()

@@ -47,19 +47,43 @@ MYRIAD_FUNCTION auto lane_of_unit(Lane& lane, int unit) {
     return unit_lane<Unit, units, S, P, Lane>(lane, unit);
 }
 
+/// Refuses functions of units with a wrong signature, and shows the right one. The arguments' values are unused.
+template <class Unit, class R, class T, class States, class Inputs>
+constexpr bool check_publish(const T* t = nullptr, States* y = nullptr, Inputs* p = nullptr) {
+    static_cast<void>(t), static_cast<void>(y), static_cast<void>(p);
+    static_assert(
+        requires {
+            { Unit::template publish<R>(int{}, *t, *y, *p) } -> std::same_as<vec<R, n_publication<Unit>>>;
+        },
+        "publish has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static myriad::vec<R, "
+        "n_publication> publish(int unit, auto t, const auto& y, const auto& p)`, with a value for each publication, "
+        "and public");
+    return true;
+}
+template <class Unit, class R, class T, class States, class Inputs>
+inline constexpr bool publish_fits = check_publish<Unit, R, T, States, Inputs>();
+template <class Unit, class R, class T, class States, class Inputs>
+constexpr bool check_unit_rhs(const T* t = nullptr, States* y = nullptr, Inputs* p = nullptr) {
+    static_cast<void>(t), static_cast<void>(y), static_cast<void>(p);
+    static_assert(
+        requires {
+            { Unit::template rhs<R>(int{}, *t, *y, *p) } -> std::same_as<vec<R, n_unit_state<Unit>>>;
+        },
+        "rhs of coupled units has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static "
+        "myriad::vec<R, n_unit_state> rhs(int unit, auto t, const auto& y, const auto& p)`, with a slope for each "
+        "state of a unit, and public");
+    return true;
+}
+template <class Unit, class R, class T, class States, class Inputs>
+inline constexpr bool rhs_fits = check_unit_rhs<Unit, R, T, States, Inputs>();
+
 /// What one unit publishes, into its places among `published`.
 template <class Unit, int units, class R>
 MYRIAD_FUNCTION void publish_of_unit(int unit, const auto& t, const R* y, const auto& p, R* published) {
     constexpr int count = n_publication<Unit>;
     const unit_states<Unit, units, const R> states{y, unit};
     const auto inputs = detail::inputs_of_unit<Unit, units>(p, unit);
-    static_assert(
-        requires {
-            { Unit::template publish<R>(unit, t, states, inputs) } -> std::same_as<vec<R, count>>;
-        },
-        "publish has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static myriad::vec<R, "
-        "n_publication> publish(int unit, auto t, const auto& y, const auto& p)`, with a value for each publication, "
-        "and public");
+    static_assert(publish_fits<Unit, R, std::remove_cvref_t<decltype(t)>, decltype(states), decltype(inputs)>);
     const auto values = Unit::template publish<R>(unit, t, states, inputs);
     MYRIAD_UNROLL
     for (int c = 0; c < count; ++c) published[c * units + unit] = values[c];
@@ -72,13 +96,7 @@ MYRIAD_FUNCTION void slopes_of_unit(int unit, const auto& t, const R* y, const a
     constexpr int count = n_unit_state<Unit>;
     const coupled_states<Unit, units, R> states{y, published, sums, unit};
     const auto inputs = detail::inputs_of_unit<Unit, units>(p, unit);
-    static_assert(
-        requires {
-            { Unit::template rhs<R>(unit, t, states, inputs) } -> std::same_as<vec<R, count>>;
-        },
-        "rhs of coupled units has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static "
-        "myriad::vec<R, n_unit_state> rhs(int unit, auto t, const auto& y, const auto& p)`, with a slope for each "
-        "state of a unit, and public");
+    static_assert(rhs_fits<Unit, R, std::remove_cvref_t<decltype(t)>, decltype(states), decltype(inputs)>);
     const auto values = Unit::template rhs<R>(unit, t, states, inputs);
     MYRIAD_UNROLL
     for (int c = 0; c < count; ++c) slopes[unit * count + c] = values[c];
@@ -89,12 +107,13 @@ MYRIAD_FUNCTION void slopes_of_unit(int unit, const auto& t, const R* y, const a
 template <class Unit, int units, int k, int rows, class R, class Real>
 MYRIAD_FUNCTION void sum_coupling(int first, const Real* matrix, const R* published, R* sums) {
     constexpr coupling_layout layout = coupling_layout_of<Unit, units, k>;
+    constexpr int entries = layout.entries_of_row();
     const R* of_all = published + layout.publication * units;
     R sum[rows];
     MYRIAD_UNROLL
     for (int r = 0; r < rows; ++r) sum[r] = R(0);
     MYRIAD_ROLLED
-    for (int e = 0; e < layout.entries_of_row(); ++e) {
+    for (int e = 0; e < entries; ++e) {
         MYRIAD_UNROLL
         for (int r = 0; r < rows; ++r) {
             const int column = layout.column(first + r, e);
@@ -115,7 +134,7 @@ MYRIAD_FUNCTION void sum_couplings(const Real* first, const R* published, R* sum
     static_for<0, n_coupling<Unit>>([&](auto k) MYRIAD_LAMBDA {
         constexpr int number = decltype(k)::value;
         constexpr bool unrolled = units * n_unit_state<Unit> <= largest_unrolled_system;
-        const Real* matrix = first + coupling_entries_before<Unit, units, number>();
+        const Real* matrix = first + first_coupling_entry<Unit, units, number>;
         detail::each_unit<0, units, together, unrolled>([&](int unit) MYRIAD_LAMBDA {
             detail::sum_coupling<Unit, units, number, together>(unit, matrix, published, sums);
         });

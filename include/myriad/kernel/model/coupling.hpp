@@ -6,6 +6,7 @@
 #include <iterator>
 #include <type_traits>
 
+#include "myriad/kernel/core/macros.hpp"
 #include "myriad/kernel/model/concepts.hpp"
 #include "myriad/kernel/model/summaries.hpp"
 
@@ -67,21 +68,21 @@ struct coupling_layout {
     int bandwidth;
     int units;
 
-    constexpr int entries_of_row() const { return bandwidth < 0 ? units : 2 * bandwidth + 1; }
-    constexpr int entries() const {
+    MYRIAD_FUNCTION int entries_of_row() const { return bandwidth < 0 ? units : 2 * bandwidth + 1; }
+    MYRIAD_FUNCTION int entries() const {
         return shape == coupling_shape::circulant ? entries_of_row() : units * entries_of_row();
     }
     /// The column of entry k of a row; outside the matrix near the corners of a banded one.
-    constexpr int column(int row, int k) const {
+    MYRIAD_FUNCTION int column(int row, int k) const {
         if (shape == coupling_shape::full) return k;
         const int j = row + k - (bandwidth < 0 ? 0 : bandwidth);
         if (shape == coupling_shape::banded) return j;
         return j < 0 ? j + units : j >= units ? j - units : j;
     }
-    constexpr int entry(int row, int k) const {
+    MYRIAD_FUNCTION int entry(int row, int k) const {
         return shape == coupling_shape::circulant ? k : row * entries_of_row() + k;
     }
-    constexpr bool in_matrix(int column) const { return column >= 0 && column < units; }
+    MYRIAD_FUNCTION bool in_matrix(int column) const { return column >= 0 && column < units; }
 };
 /// Without the mark of a type, which device code cannot use.
 template <class Unit, int units, int k>
@@ -97,6 +98,9 @@ constexpr int coupling_entries_before() {
         return coupling_entries_before<Unit, units, end - 1>() + coupling_layout_of<Unit, units, end - 1>.entries();
     }
 }
+
+template <class Unit, int units, int k>
+inline constexpr int first_coupling_entry = coupling_entries_before<Unit, units, k>();
 
 /// Whether a mark of a type stands for a number, or for the units' enumeration of publications.
 template <class Unit>

@@ -95,8 +95,10 @@ constexpr bool check_unit_index() {
     return true;
 }
 template <class E, int size, class I>
+inline constexpr bool unit_index_fits = check_unit_index<E, size, I>();
+template <class E, int size, class I>
 MYRIAD_FUNCTION int unit_index(I i) {
-    static_assert(check_unit_index<E, size, I>());
+    static_assert(unit_index_fits<E, size, I>);
     return checked_index<size>(static_cast<int>(i));
 }
 

@@ -30,12 +30,13 @@ inline constexpr bool loops_over_stages = loops_over_stages_of<Method, Model, S>
 /// else more threads, of which one works while another waits.
 template <class Method, class Model, class R>
 constexpr bool fills_registers() {
-    if constexpr (rosenbrock_method<Method> && factorises_sparsely<Model>) {
-        constexpr int numbers = Method::stages * n_state<Model> + n_factor_entry<Model>;
-        return 2 * numbers * static_cast<int>(sizeof(R)) > register_bytes;
-    } else {
-        return false;
+    if constexpr (rosenbrock_method<Method>) {  // else the factors of large models need not be counted
+        if constexpr (factorises_sparsely<Model>) {
+            constexpr int numbers = Method::stages * n_state<Model> + n_factor_entry<Model>;
+            return 2 * numbers * static_cast<int>(sizeof(R)) > register_bytes;
+        }
     }
+    return false;
 }
 
 /// What a thread has in the shared memory of its block.
