@@ -63,7 +63,8 @@ class run {
 public:
     run(const any_model& model, const study_plan& plan, result_keeper& keeper, const run_settings& settings)
         : model_(model), plan_(plan), keeper_(keeper), settings_(settings),
-          sharing_(settings.devices, keeper.content().chunk), earlier_(keeper.instances_done()), committed_(earlier_) {
+          sharing_(settings.devices, keeper.content().chunk, settings.tried_after), earlier_(keeper.instances_done()),
+          committed_(earlier_) {
         for (const device& d : settings.devices) devices_.emplace_back(d, devices_.size());
     }
 
@@ -188,7 +189,8 @@ private:
         if (solver == nullptr) solver = model_.make_solver(plan_, d.where);
         const std::vector<bool> wanted =
             solver->on_device() ? plan_.needed_on_host() : std::vector<bool>(plan_.quantities.size(), true);
-        std::int64_t piece = settings_.piece > 0 ? std::min(settings_.piece, content().chunk) : content().chunk;
+        std::int64_t piece = content().chunk;
+        if (settings_.piece > 0 && !solver->on_device()) piece = std::min(settings_.piece, piece);
         as_device(d, *solver, [&] { piece = std::min(piece, solver->most_at_a_time()); });
         while (const std::optional<std::int64_t> chunk = next_chunk(d, mine)) {
             const chunk_range range = range_of(content(), *chunk);
@@ -229,8 +231,8 @@ private:
         for (;;) {
             if (stopping_ || d.failed || (settings_.stops && settings_.stops())) return {};
             // The first chunk alone, as long as it is not known how fast the device is.
-            if ((sharing_.is_known(d.number) || !d.exploring.exchange(true)) &&
-                is_worthwhile(d, content().chunk, left())) {
+            if (is_worthwhile(d, content().chunk, left()) &&
+                (sharing_.is_known(d.number) || !d.exploring.exchange(true))) {
                 if (const auto chunk = keeper_.claim_next()) {
                     mine.begun = clock::now().time_since_epoch().count();
                     mine.rest = range_of(content(), *chunk).count;
@@ -260,7 +262,7 @@ private:
     bool is_worthwhile(const used_device& d, std::int64_t more, std::int64_t left) {
         for (const thread_work& t : under_way_)
             if (t.number == d.number) more += t.rest;
-        return sharing_.is_worthwhile(d.number, more, left);
+        return sharing_.is_worthwhile(d.number, more, left, seconds_since(begin_));
     }
     /// Asks another device for a chunk that this one, which has nothing to do, is done with earlier.
     void ask_for_a_chunk(const used_device& d) {

@@ -23,23 +23,24 @@ namespace {
 
 using studies::element;
 
-/// Whether all devices set and reduce instances themselves.
-bool on_devices(const studies::any_model& model, const studies::study_plan& plan, const std::vector<device>& devices) {
-    return std::all_of(devices.begin(), devices.end(),
-                       [&](const device& d) { return model.make_device_solver(plan, d) != nullptr; });
+/// Which devices set and reduce instances themselves, so that little of a chunk is in the host's memory.
+struct kinds_of_devices {
+    bool alone = false, on_host = false;
+};
+kinds_of_devices kinds_of(const studies::any_model& model, const studies::study_plan& plan,
+                          const std::vector<device>& devices) {
+    kinds_of_devices found;
+    for (const device& d : devices) (model.make_device_solver(plan, d) != nullptr ? found.alone : found.on_host) = true;
+    return found;
 }
 
-/// Instances of a chunk, and of them those to be integrated at a time, as far as free memory goes.
+/// Instances of a chunk, and of them those to be integrated in the host's memory at a time, as far as that goes.
 struct chunk_sizes {
     std::int64_t chunk, piece;
 };
 chunk_sizes choose_sizes(const studies::any_model& model, const studies::study_plan& plan, bool in_memory,
                          const std::vector<device>& devices) {
     const std::int64_t n = plan.content.instances();
-    const double worked_on =
-        on_devices(model, plan, devices)
-            ? static_cast<double>(std::max(plan.bytes_needed_on_host(), std::int64_t{8}))
-            : model.bytes_per_instance(plan.asked.options) + static_cast<double>(plan.bytes_per_instance());
     // Two threads for each device; half of what the results leave stays free.
     double free = host::available_memory().bytes;
     if (in_memory) free -= static_cast<double>(plan.content.bytes());
@@ -47,14 +48,25 @@ chunk_sizes choose_sizes(const studies::any_model& model, const studies::study_p
     constexpr double enough = 256e6;  // bytes: more instances make no device faster
     // Fewer would be slow on any device. If even they do not fit, the run finds out how many do.
     const std::int64_t fewest = std::min<std::int64_t>(n, 1024);
-    const auto fitting = static_cast<std::int64_t>(std::min(of_thread, enough) / worked_on);
-    const std::int64_t most = std::clamp(fitting, fewest, n);
+    const auto fitting = [&](double bytes, double bytes_each) {
+        return std::clamp(static_cast<std::int64_t>(std::min(bytes / std::max(bytes_each, 8.0), 1e18)), fewest, n);
+    };
+    const auto [alone, on_host] = kinds_of(model, plan, devices);
+    const auto values = static_cast<double>(plan.bytes_per_instance());
+    const std::int64_t piece =
+        fitting(std::min(of_thread, enough), model.bytes_per_instance(plan.asked.options) + values);
+    std::int64_t most = piece;
+    if (alone) {
+        // A GPU alone decides how large chunks are: a CPU beside it, which is slower, does them in pieces.
+        most = fitting(std::min(of_thread, enough), static_cast<double>(plan.bytes_needed_on_host()));
+        if (on_host) most = std::min(most, fitting(of_thread, values));
+    }
     // Enough instances to keep all lanes and threads busy, and as many chunks as let little be lost.
     const bool has_gpu =
         std::any_of(devices.begin(), devices.end(), [](const device& d) { return d.which() != device::kind::cpu; });
     const auto threads = static_cast<std::int64_t>(std::max(std::thread::hardware_concurrency(), 1u));
     const std::int64_t least = has_gpu ? std::int64_t{1} << 20 : 256 * threads;
-    return {std::min(std::max((n + 31) / 32, least), most), most};
+    return {std::min(std::max((n + 31) / 32, least), most), piece};
 }
 
 /// Refuses chunks whose values alone do not fit: they are in memory as a whole, however few instances are integrated at
@@ -210,8 +222,8 @@ any_study::planned_run any_study::plan() const {
     const chunk_sizes sizes = choose_sizes(*model_, made, folder_.empty(), settings.devices);
     made.content.chunk = chunk > 0 ? std::min(chunk, size()) : sizes.chunk;
     settings.piece = sizes.piece;
-    const auto bytes = static_cast<double>(on_devices(*model_, made, settings.devices) ? made.bytes_needed_on_host()
-                                                                                       : made.bytes_per_instance());
+    const auto bytes = static_cast<double>(
+        kinds_of(*model_, made, settings.devices).on_host ? made.bytes_per_instance() : made.bytes_needed_on_host());
     check_memory(bytes, made.content, settings.devices, statement_of(host::cures::smaller_chunk, ", or keep less"));
     return {std::move(settings), std::move(made), bytes};
 }

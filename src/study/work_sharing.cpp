@@ -19,12 +19,14 @@ constexpr double clearly = 1.25;  // rates differ between chunks
 
 }  // namespace
 
-work_sharing::work_sharing(const std::vector<device>& devices, std::int64_t chunk) : chunk_(chunk) {
+work_sharing::work_sharing(const std::vector<device>& devices, std::int64_t chunk, double tried_after)
+    : chunk_(chunk), tried_after_(tried_after) {
     for (const device& d : devices) {
         pace p{.is_cpu = d.which() == device::kind::cpu};
         const int threads = d.threads() > 0 ? d.threads() : static_cast<int>(std::thread::hardware_concurrency());
         p.first_part = p.is_cpu ? per_thread * std::max(threads, 1) : std::max(chunk / 8, busy_gpu);
         paces_.push_back(p);
+        has_gpu_ = has_gpu_ || !p.is_cpu;
         is_mixed_ = is_mixed_ || (devices.size() > 1 && (p.is_cpu || d.description() != devices[0].description()));
     }
 }
@@ -38,6 +40,7 @@ work_sharing::others work_sharing::without(std::size_t number) const {
         found.together += rate;
         found.fastest = std::max(found.fastest, rate);
         found.are_known = found.are_known && its.per_second > 0;
+        found.any = true;
     }
     return found;
 }
@@ -47,7 +50,7 @@ std::int64_t work_sharing::part(std::size_t number, std::int64_t rest, std::int6
     const pace& mine = paces_[number];
     if (!is_mixed_ || (!mine.is_cpu && mine.per_second > 0)) return rest;
     if (mine.last_part == 0) return std::min(rest, mine.first_part);
-    const auto [together, fastest, are_known] = without(number);
+    const auto [together, fastest, are_known, any] = without(number);
     if (mine.per_second <= 0 || together <= 0 || !are_known) return std::min(rest, 2 * mine.last_part);
     const double count = mine.per_second * part_of_time * static_cast<double>(left) / together;
     if (count >= static_cast<double>(rest)) return rest;
@@ -81,10 +84,13 @@ bool work_sharing::is_known(std::size_t number) const {
     return !is_mixed_ || paces_[number].per_second > 0;
 }
 
-bool work_sharing::is_worthwhile(std::size_t number, std::int64_t rest, std::int64_t left) const {
+bool work_sharing::is_worthwhile(std::size_t number, std::int64_t rest, std::int64_t left, double now) const {
     const std::lock_guard lock(mutex_);
     const double mine = paces_[number].per_second;
-    const auto [together, fastest, are_known] = without(number);
+    const auto [together, fastest, are_known, any] = without(number);
+    if (any && has_gpu_ && paces_[number].is_cpu && paces_[number].calls == 0 && now < tried_after_ &&
+        !(are_known && static_cast<double>(left) / together >= tried_after_))
+        return false;
     if (mine <= 0 || together <= 0 || mine >= fastest) return true;
     return mine >= least_of_rate * together && static_cast<double>(rest) / mine <= static_cast<double>(left) / together;
 }

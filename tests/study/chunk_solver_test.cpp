@@ -131,6 +131,22 @@ TEST_CASE("Only what is kept leaves the device, and reductions are those of all 
     CHECK(inside == 1000);
     CHECK(r.values("y_end_minimum")[0] < r.values("y_end_mean")[0]);
 }
+TEST_CASE("A CPU beside a GPU does not make chunks smaller", "[chunk_solver]") {
+    const auto chunk_on = [](std::vector<device> devices) {
+        lorenz_study s;
+        for (const char* name : {"x", "y", "z", "r"}) s.set(name, 1);
+        s.time_domain(0, 1);
+        s.options.step = 0.01;
+        s.repeat(1'000'000'000);
+        s.keep = {.random = false, .status = false};
+        s.reduce(mean_of("x_end"));
+        s.devices = std::move(devices);
+        s.stop();  // before the run, which it ends too
+        return s.run().content().chunk;
+    };
+    const device where = tests::test_device();
+    CHECK(chunk_on({where, device::cpu(1)}) >= chunk_on({where}) / 2);  // of the memory, half is another device's
+}
 TEST_CASE("A model sets instances by its own function, the same on every device", "[chunk_solver]") {
     const auto run = [](auto&& prepare) {
         wave_study s;

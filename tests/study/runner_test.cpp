@@ -101,11 +101,13 @@ struct test_run {
         plan.content.chunk = chunk;
         const auto keeper = keep_in_memory(plan.content);
         before(*keeper);
-        const run_outcome outcome = run_study(
-            model, plan, *keeper,
-            {.devices = devices, .stops = stops, .patience = patience, .warning = [this](const std::string& text) {
-                 warnings.push_back(text);
-             }});
+        const run_outcome outcome =
+            run_study(model, plan, *keeper,
+                      {.devices = devices,
+                       .tried_after = 0,
+                       .stops = stops,
+                       .patience = patience,
+                       .warning = [this](const std::string& text) { warnings.push_back(text); }});
         if (outcome.complete) {
             std::vector<double> x(1000);
             keeper->kept()->read("x_end", 0, 1000, x.data());

@@ -23,7 +23,8 @@ namespace myriad::studies::inline MYRIAD_ABI {
 /// How a study is run.
 struct run_settings {
     std::vector<device> devices;
-    std::int64_t piece = 0;            ///< most instances to integrate at a time; 0: a chunk
+    std::int64_t piece = 0;            ///< most instances in the host's memory at a time; 0: a chunk
+    double tried_after = 0.1;          ///< seconds of GPUs alone, before a CPU beside them is tried
     std::function<bool()> stops = {};  ///< whether to end after the chunks under way; called by all threads
     std::chrono::milliseconds patience = std::chrono::seconds(10);  ///< with them then; slower ones are given up
     std::function<void(const work_progress&)> progress = {};        ///< may be empty

@@ -16,10 +16,12 @@ namespace myriad::studies::inline MYRIAD_ABI {
 /// Rates of devices, and what follows from them. Devices are numbered as they were given; all functions may be called
 /// by several threads. Where all devices are equal GPUs, or there is one, each takes chunk after chunk as a whole.
 /// Otherwise a device integrates its first chunk in parts, of which the first is small, until its rate is known, and a
-/// CPU every chunk: it gives a chunk back as soon as the others would be done with all that is left before it.
+/// CPU every chunk: it gives a chunk back as soon as the others would be done with all that is left before it. A CPU
+/// beside a GPU is not even tried where the GPU is soon done, since it costs some milliseconds to find out its rate.
 class work_sharing {
 public:
-    work_sharing(const std::vector<device>& devices, std::int64_t chunk);
+    /// `tried_after`: seconds that the GPUs have taken, or have left, before a CPU beside them is tried.
+    work_sharing(const std::vector<device>& devices, std::int64_t chunk, double tried_after = 0.1);
 
     /// Instances, of the rest of a chunk, that a device is to integrate before it asks again; `left`: all that are not
     /// done in the study.
@@ -34,8 +36,8 @@ public:
     /// Whether it is known how fast a device is, or need not be: otherwise it should have one chunk alone.
     bool is_known(std::size_t number) const;
     /// Whether a device should begin, or go on with, the `rest` of what it has, where `left` are not done in the study.
-    /// Always true of the fastest one.
-    bool is_worthwhile(std::size_t number, std::int64_t rest, std::int64_t left) const;
+    /// `now`: seconds since the run began. Always true of the fastest one whose rate is known.
+    bool is_worthwhile(std::size_t number, std::int64_t rest, std::int64_t left, double now) const;
     /// Whether a device that has nothing to do would be done with a whole chunk before another is with the rest of its
     /// own, of which it has done so many instances in so many seconds.
     bool is_better_off_with(std::size_t idle, std::size_t other, std::int64_t rest, std::int64_t done,
@@ -52,13 +54,15 @@ private:
     struct others {
         double together = 0, fastest = 0;
         bool are_known = true;  // otherwise they are faster
+        bool any = false;
     };
     others without(std::size_t number) const;
 
     mutable std::mutex mutex_;
     std::vector<pace> paces_;
     std::int64_t chunk_;
-    bool is_mixed_ = false;
+    double tried_after_;
+    bool is_mixed_ = false, has_gpu_ = false;
 };
 
 }  // namespace myriad::studies::inline MYRIAD_ABI
