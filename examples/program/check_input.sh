@@ -39,6 +39,12 @@ bad '^bad\.toml:9:1: axes\.k: paired axes have different lengths' \
 bad '^bad\.toml:10:1: axes\.k: parameter\.k is given twice' -e '/^k = /{p;s/^/[[axes]]\n/}' -e 's/^\[axes\]/[[axes]]/'
 bad '^bad\.toml:18:1: reduce\.minimum: there is no such key: did you mean "minimum_of"\?' \
     -e '17i [[reduce]]\nminimum = "x"'
+bad '^bad\.toml:22:1: reduce\.quantiles_of: needs quantiles' \
+    -e '$a [[reduce]]\nquantiles_of = "x"\nedges = {linspace = [-2, 2, 9]}'
+bad 'reduce\.quantiles: are for quantiles_of alone' \
+    -e '$a [[reduce]]\nhistograms_of = "x"\nquantiles = [0.5]\nedges = {linspace = [-2, 2, 9]}'
+bad 'reduce\.edges: a quantile of x is 50 \(must be from 0 to 1\)' \
+    -e '$a [[reduce]]\nquantiles_of = "x"\nquantiles = [50]\nedges = {linspace = [-2, 2, 9]}'
 bad '^bad\.toml:4:1: the .* chunks .*(free|disk)' -e 's/0\.3, 64/0.3, 1e11/' 
 bad '^bad\.toml:4:1: .*is not empty and holds no study' -e 's/"results"/"."/'
 sed 's/^k = .*/k = "2 pi"/' good.toml >bad.toml
@@ -57,6 +63,14 @@ for option in $options; do
     expect 2 "options\.$option: " "$program" run bad.toml
     grep -q 'there is no such key' stderr && fail "no file may have $option"
 done
+
+# Reductions of each phase.
+sed -e 's/"results"/"reduced"/' \
+    -e '$a [[reduce]]\nhistograms_of = "x"\nquantiles_of = "x"\nquantiles = [0.5]\nedges = {linspace = [-2, 2, 9]}' \
+    good.toml >reduced.toml
+expect 0 '' "$program" run reduced.toml --quiet
+"$program" info reduced >shown
+for name in x_histograms x_histograms_outside x_quantiles; do grep -q "$name" shown || fail "there is no $name"; done
 
 # Another study in the same folder: what differs, and where.
 expect 0 '' "$program" run good.toml --quiet

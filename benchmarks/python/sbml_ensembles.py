@@ -1,0 +1,169 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Times ensembles of models in files of SBML, and compares them with libRoadRunner where it is installed.
+
+FOLDER has the files. An instance has each parameter of its file multiplied by a random number, the largest of which is
+`--spread` times the smallest, and is integrated to the end with 100 equidistant outputs. libRoadRunner (CVODE, the same
+tolerances) solves the first instances of the same ensemble, one after the other on one core, and only its calls of
+`simulate` are timed. Times are the fastest of several calls: of a core on CPUs, where other work then matters less,
+and by the clock on GPUs. Errors are relative to the largest value of each species in each instance, against
+libRoadRunner, or else Myriad, with a relative tolerance of 1e-11; the median and the largest of the instances are told.
+
+Writes rows "model,species,instances,device,program,milliseconds per instance,median error,largest error,kernel ms".
+Nothing is downloaded: benchmarks/README.md says where the published models are from."""
+
+import argparse
+import importlib.util
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+
+import myriad as my
+from myriad.sbml_document import read
+
+
+def swept(model):
+    """The constants that differ between instances: libRoadRunner knows them by the same ids."""
+    document, file = read(model)
+    set_by_events = {file.getEvent(e).getEventAssignment(i).getVariable() for e in range(file.getNumEvents())
+                     for i in range(file.getEvent(e).getNumEventAssignments())}
+    varied = {}
+    for i in range(file.getNumParameters()):
+        p = file.getParameter(i)
+        is_set = file.getRuleByVariable(p.getId()) or file.getInitialAssignmentBySymbol(p.getId())
+        if p.isSetValue() and p.getValue() and not is_set and p.getId() not in set_by_events:
+            varied[p.getId()] = p.getValue()
+    names = [file.getSpecies(i).getId() for i in range(file.getNumSpecies())]
+    amounts = {file.getSpecies(i).getId() for i in range(file.getNumSpecies())
+               if file.getSpecies(i).getHasOnlySubstanceUnits()}
+    return varied, names, amounts
+
+
+def by_roadrunner(path, ensemble, start, names, amounts, end, tolerance, count, calls=1):
+    """(seconds, values) of the first instances: values[instance, output, species]."""
+    import roadrunner
+
+    roadrunner.Logger.setLevel(roadrunner.Logger.LOG_FATAL)
+    runner = roadrunner.RoadRunner(str(path))
+    runner.timeCourseSelections = [name if name in amounts else f"[{name}]" for name in names]
+    integrator = runner.integrator
+    integrator.relative_tolerance, integrator.absolute_tolerance = tolerance
+    integrator.maximum_num_steps = 1_000_000
+    floating = set(runner.model.getFloatingSpeciesIds())
+
+    def start_of(i):
+        runner.resetToOrigin()
+        for name, column in ensemble.items():
+            runner.model[name] = column[i]
+        runner.reset()
+        for name in names:  # those that follow from constants too
+            if name in floating and name in start:
+                runner.model[name if name in amounts else f"[{name}]"] = start[name][i]
+
+    seconds, values = 0.0, []
+    for i in range(count):
+        fastest = np.inf
+        for _ in range(calls):
+            start_of(i)
+            begin = time.process_time()
+            found = np.array(runner.simulate(0, end, 100))
+            fastest = min(fastest, time.process_time() - begin)
+        seconds += fastest
+        values.append(found)
+    return seconds, np.array(values)
+
+
+def errors(values, reference):
+    """(median, largest) over instances of the largest error of any species."""
+    scale = np.abs(reference).max(axis=1, keepdims=True)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        relative = np.where(scale > 0, np.abs(values - reference) / scale, 0.0)
+    of_instances = relative.max(axis=(1, 2))
+    return float(np.median(of_instances)), float(of_instances.max())
+
+
+def measure(path, options):
+    """The rows of one model."""
+    end = dict(options.ends).get(path.stem, 100.0)
+    model = my.read_sbml(path)
+    constants, names, amounts = swept(path)
+    constants = {n: v for n, v in constants.items() if model.aliases.get(n, n) in model.parameters}
+    random = np.random.default_rng(1)
+    ensemble = {n: v * options.spread ** random.uniform(-0.5, 0.5, options.instances) for n, v in constants.items()}
+    tolerance = options.rtol, options.atol
+    accurate = 1e-11, 1e-11 * options.atol / options.rtol
+
+    def solve(count, rtol, atol):
+        return my.solve(model, {n: v[:count] for n, v in ensemble.items()}, time=(0, end),
+                        samples=np.linspace(0, end, 100), method=options.method, device=options.device, advice=False,
+                        rtol=rtol, atol=atol)
+
+    begin = time.perf_counter()
+    solve(2, *tolerance)
+    print(f"{path.stem}: compiled in {time.perf_counter() - begin:.1f} s", file=sys.stderr)
+    clock = time.perf_counter if options.device.startswith("cuda") else time.process_time
+    best, kernel, run = np.inf, np.inf, None
+    for _ in range(options.calls):
+        begin = clock()
+        run = solve(options.instances, *tolerance)
+        best = min(best, clock() - begin)
+        kernel = min(kernel, run.report.kernel_seconds or run.report.seconds)
+    compared = min(options.compared, options.instances)
+    names = [n for n in names if n in run and np.ndim(run[n]) == 2]
+
+    def of_species(run):
+        return np.stack([run[n][:compared] for n in names], axis=2)
+
+    has_peer = importlib.util.find_spec("roadrunner") is not None
+    if has_peer:
+        start = {n: run[n][:compared, 0] for n in names}
+        arguments = path, ensemble, start, names, amounts, end
+        _, reference = by_roadrunner(*arguments, accurate, compared)
+        seconds, theirs = by_roadrunner(*arguments, tolerance, compared, options.calls)
+    else:
+        reference = of_species(solve(compared, *accurate))
+    rows = [("Myriad", options.device, options.instances, best, errors(of_species(run), reference), 1e3 * kernel)]
+    if has_peer:
+        rows.append(("libRoadRunner", "cpu:1", compared, seconds, errors(theirs, reference), ""))
+        print(f"{path.stem}: {seconds / compared * options.instances / best:.1f} times as fast as libRoadRunner; "
+              f"{run.report}", file=sys.stderr)
+    for program, device, count, seconds, error, in_kernel in rows:
+        yield path.stem, len(names), count, device, program, 1e3 * seconds / count, *error, in_kernel
+    if run.failed.any():
+        print(f"{path.stem}: {int(run.failed.sum())} instances failed", file=sys.stderr)
+
+
+def named_number(text):
+    """NAME=NUMBER."""
+    name, _, number = text.partition("=")
+    return name, float(number)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=Path, metavar="FOLDER")
+    parser.add_argument("--models", help="some files alone, by their names without .xml, separated by commas")
+    parser.add_argument("--end", dest="ends", type=named_number, action="append", default=[], metavar="MODEL=TIME",
+                        help="when a model ends (100); may be repeated")
+    parser.add_argument("--instances", type=int, default=1000)
+    parser.add_argument("--spread", type=float, default=2.0, help="largest factor of a parameter over the smallest (2)")
+    parser.add_argument("--compared", type=int, default=20, help="instances with known errors, libRoadRunner's (20)")
+    parser.add_argument("--rtol", type=float, default=1e-6)
+    parser.add_argument("--atol", type=float, default=1e-6)
+    parser.add_argument("--method", default="rodas_5p")
+    parser.add_argument("--device", default="cpu:1", help="as of myriad.solve (cpu:1: one core, as libRoadRunner has)")
+    parser.add_argument("--calls", type=int, default=3, help="of which the fastest counts (3)")
+    options = parser.parse_args()
+    wanted = options.models.split(",") if options.models else None
+    print("model,species,instances,device,program,milliseconds per instance,median error,largest error,kernel ms")
+    for path in sorted(options.folder.glob("*.xml")):
+        if wanted is None or path.stem in wanted:
+            for row in measure(path, options):
+                print(",".join(f"{v:.4g}" if isinstance(v, float) else str(v) for v in row), flush=True)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
