@@ -431,6 +431,8 @@ void export_netcdf(const results& from, const std::string& path, const netcdf_op
     static std::mutex one_at_a_time;
     const std::lock_guard lock(one_at_a_time);
     const std::string place = file_place(path);
+    require(place.find('\\') == place.npos, "the path ", place, " has a backslash, which netCDF takes for a slash",
+            host::cure, "give another path");
     unfinished_file file(place);
     try {
         exporter writes(from, options);

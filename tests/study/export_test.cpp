@@ -281,6 +281,15 @@ TEST_CASE("an export that fails says so and leaves nothing, and the file that wa
     CHECK(files == 4);
 }
 
+TEST_CASE("a netCDF file with a backslash in its name is not written elsewhere") {
+    tests::temporary_folder folder;
+    tests::run_synthetic(folder / "run", tests::synthetic_layout());
+    std::filesystem::create_directory(folder / "back");
+    CHECK_THROWS_WITH(myriad::export_netcdf(store::open(folder / "run"), folder / "back\\slash.nc"),
+                      Contains("has a backslash, which netCDF takes for a slash: give another path"));
+    CHECK(std::filesystem::is_empty(folder / "back"));
+}
+
 TEST_CASE("an export replaces what a symbolic link points to, and no device") {
     tests::temporary_folder folder;
     tests::run_synthetic(folder / "run", tests::synthetic_layout());
