@@ -3,7 +3,7 @@
 """Times ensembles of models in files of SBML, and compares them with libRoadRunner where it is installed.
 
 FOLDER has the files. An instance has each parameter of its file, but for those of kinetic laws, multiplied by a random
-number, the largest of which is `--spread` times the smallest, and is integrated to the end with 100 equidistant outputs.
+number, the largest `--spread` times the smallest, and is integrated to the end with 100 equidistant outputs.
 libRoadRunner (CVODE, the same tolerances) solves the first instances of the same ensemble, one after the other on one
 core, and only its calls of `simulate` are timed. Times are the fastest of several calls: of a core on CPUs, where other
 work then matters less, and by the clock on GPUs. Errors are relative to the largest value of each species in each
