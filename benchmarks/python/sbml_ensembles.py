@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: MIT
 """Times ensembles of models in files of SBML, and compares them with libRoadRunner where it is installed.
 
-FOLDER has the files. An instance has each parameter of its file multiplied by a random number, the largest of which is
-`--spread` times the smallest, and is integrated to the end with 100 equidistant outputs. libRoadRunner (CVODE, the same
-tolerances) solves the first instances of the same ensemble, one after the other on one core, and only its calls of
-`simulate` are timed. Times are the fastest of several calls: of a core on CPUs, where other work then matters less,
-and by the clock on GPUs. Errors are relative to the largest value of each species in each instance, against
-libRoadRunner, or else Myriad, with a relative tolerance of 1e-11; the median and the largest of the instances are told.
+FOLDER has the files. An instance has each parameter of its file, but for those of kinetic laws, multiplied by a random
+number, the largest `--spread` times the smallest, and is integrated to the end with 100 equidistant outputs.
+libRoadRunner (CVODE, the same tolerances) solves the first instances of the same ensemble, one after the other on one
+core, and only its calls of `simulate` are timed. Times are the fastest of several calls: of a core on CPUs, where other
+work then matters less, and by the clock on GPUs. Errors are relative to the largest value of each species in each
+instance, against libRoadRunner, or else Myriad, with a relative tolerance of 1e-11; the median and the largest of the
+instances are told.
 
 Writes rows "model,species,instances,device,program,milliseconds per instance,median error,largest error,kernel ms".
 Nothing is downloaded: benchmarks/README.md says where the published models are from."""
@@ -98,7 +99,7 @@ def measure(path, options):
     def solve(count, rtol, atol):
         return my.solve(model, {n: v[:count] for n, v in ensemble.items()}, time=(0, end),
                         samples=np.linspace(0, end, 100), method=options.method, device=options.device, advice=False,
-                        rtol=rtol, atol=atol)
+                        rtol=rtol, atol=atol, size=None if ensemble else count)
 
     begin = time.perf_counter()
     solve(2, *tolerance)
