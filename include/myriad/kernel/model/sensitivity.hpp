@@ -3,6 +3,7 @@
 // shared values, by its variational equations in dual numbers.
 #pragma once
 
+#include "myriad/kernel/model/mass_matrix.hpp"
 #include "myriad/kernel/model/variations.hpp"
 
 namespace myriad::detail {
@@ -96,6 +97,9 @@ struct with_sensitivities : detail::with_variations<Model, detail::component_dir
                   "with_sensitivities takes no model that writes parameters: let its hooks write an accessory instead");
     static_assert(!detail::writes_time_domain<Model>,
                   "with_sensitivities takes no model that writes its time domain: end phases by an event");
+
+    static_assert(!detail::has_mass_matrix<Model>,
+                  "with_sensitivities takes no model with a mass_matrix, which would have to multiply them too");
 
     using directions = detail::component_directions<Model, wrt...>;
     using base = detail::with_variations<Model, directions>;  ///< with the equations of the derivatives
