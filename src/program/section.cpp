@@ -70,9 +70,13 @@ std::string quoted(std::string_view text) { return message('"', text, '"'); }
 using enum host::cures;
 /// What study files have other words for than C++.
 constexpr std::pair<host::cures, std::string_view> cures_in_files[] = {
-    {set_value, "give it a value under [set]"}, {give_step, "give step under [options]"},
-    {use_doubles, "write real = \"double\""},   {smaller_parts, "make chunk smaller"},
-    {fewer_instances, "make chunk smaller"},    {new_folder, "give another store and a smaller chunk"}};
+    {set_value, "give it a value under [set]"},
+    {give_step, "give step under [options]"},
+    {use_doubles, "write real = \"double\""},
+    {smaller_parts, "make chunk smaller"},
+    {fewer_instances, "make chunk smaller"},
+    {new_folder, "give another store and a smaller chunk"},
+    {make_consistent, "give initial values that satisfy them"}};
 
 }  // namespace
 

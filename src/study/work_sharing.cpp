@@ -12,6 +12,7 @@ namespace {
 constexpr std::int64_t per_thread = 64;                   // instances: a few for each lane of a core
 constexpr std::int64_t busy_gpu = std::int64_t{1} << 16;  // fewer take as long
 constexpr double shortest = 5e-3;                         // seconds of a part of the CPU that its rate is taken from
+constexpr double loading = 20;                            // seconds that a kernel takes at the most
 constexpr double part_of_time = 0.02;                     // that the others have left, for a part of the CPU
 // A device with less of the others' rate costs more, as cores that serve GPUs, than it does.
 constexpr double least_of_rate = 0.02;
@@ -70,8 +71,8 @@ void work_sharing::measured(std::size_t number, std::int64_t instances, double s
     ++mine.calls;
     mine.last_part = std::max(mine.last_part, instances);
     if (seconds > 0) mine.at_least = static_cast<double>(instances) / seconds;
-    // A GPU's first call may take long for its kernel to be loaded.
-    if (seconds > 0 && (mine.is_cpu ? seconds >= shortest || instances == chunk_ : mine.calls > 1))
+    // A GPU's first call may take long for its kernel to be loaded, but not as long as that.
+    if (seconds > 0 && (mine.is_cpu ? seconds >= shortest || instances == chunk_ : mine.calls > 1 || seconds > loading))
         mine.per_second = mine.at_least;
 }
 

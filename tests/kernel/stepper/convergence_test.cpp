@@ -47,9 +47,9 @@ TEST_CASE("dormand_prince_8 has order eight") {
     check_order<dormand_prince_8, problems::timed_circle>(8, 0.25, 1, {0.15, 0.3});
 }
 TEST_CASE("verner_9 has order nine") {
-    check_order<verner_9, problems::oscillator>(9, 2, 16);
-    check_order<verner_9, problems::log_circle>(9, 1, 2, {0.3, 3});
-    check_order<verner_9, problems::timed_circle>(9, 0.25, 1, {0.3, 3});
+    check_order<verner_9, problems::oscillator>(9, 2, 16, {0.1, 0.5});
+    check_order<verner_9, problems::log_circle>(9, 2, 4, {0.3, 3});
+    check_order<verner_9, problems::timed_circle>(9, 0.5, 2, {0.3, 3});
 }
 
 TEST_CASE("runge_kutta_4 has order four in single precision") {

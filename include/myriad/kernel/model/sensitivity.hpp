@@ -101,10 +101,12 @@ struct with_sensitivities : detail::with_variations<Model, detail::component_dir
     static_assert(!detail::has_mass_matrix<Model>,
                   "with_sensitivities takes no model with a mass_matrix, which would have to multiply them too");
 
+    /// What it has derivatives by.
     using directions = detail::component_directions<Model, wrt...>;
     using base = detail::with_variations<Model, directions>;  ///< with the equations of the derivatives
     using base::n_original, base::n_tangent, base::n_state;
     static constexpr int n_directions = directions::count;  ///< number of components that it has derivatives by
+    /// Where they lie among the accessories.
     using places = detail::sensitivity_places<Model, n_directions>;
 
     /// The derivative of state c by component i, among the states.

@@ -7,7 +7,7 @@
 #include "myriad/kernel/model/hooks.hpp"
 #include "myriad/kernel/scalar/dual.hpp"
 
-namespace myriad::inline MYRIAD_TARGET {
+namespace myriad::detail::inline MYRIAD_TARGET {
 
 /// Shared values of which one has a derivative; tables among them are constants.
 template <class Model, class S>
@@ -33,7 +33,7 @@ struct moving_shared_lane : lane<Model, dual<S>> {
         : lane<Model, dual<S>>(d), shared{d.shared, moving} {}
 };
 
-}  // namespace myriad::inline MYRIAD_TARGET
+}  // namespace myriad::detail::inline MYRIAD_TARGET
 
 namespace myriad::detail {
 
