@@ -202,7 +202,7 @@ TEST_CASE("Mistakes with axes are refused with what is wrong", "[axes]") {
 
     const double inf = std::numeric_limits<double>::infinity();
     CHECK_THAT(message_of([&] { (void)linspace(0, inf, 5); }), Contains("linspace is given inf"));
-    CHECK_THAT(message_of([&] { (void)linspace(-1e308, 1e308, 5); }), Contains("finite"));
+    CHECK_THAT(message_of([&] { (void)linspace(-1e308, 1e308, 5); }), Contains("longer than the largest"));
     CHECK_THAT(message_of([&] { (void)linspace(0, 1, 0); }), Contains("linspace is given 0 values"));
     CHECK_THAT(message_of([&] { (void)geomspace(-1, 1, 5); }), Contains("passes zero"));
     CHECK_THAT(message_of([&] { (void)values({}); }), Contains("values is given 0 values"));

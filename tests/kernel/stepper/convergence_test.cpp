@@ -46,11 +46,8 @@ TEST_CASE("dormand_prince_8 has order eight") {
     check_order<dormand_prince_8, problems::log_circle>(8, 1, 2, {0.15, 0.3});
     check_order<dormand_prince_8, problems::timed_circle>(8, 0.25, 1, {0.15, 0.3});
 }
-TEST_CASE("verner_9 has order nine") {
-    check_order<verner_9, problems::oscillator>(9, 2, 16, {0.1, 0.5});
-    check_order<verner_9, problems::log_circle>(9, 2, 4, {0.3, 3});
-    check_order<verner_9, problems::timed_circle>(9, 0.5, 2, {0.3, 3});
-}
+// The nonlinear problems have only rounding errors left before three halvings.
+TEST_CASE("verner_9 has order nine") { check_order<verner_9, problems::oscillator>(9, 2, 16, {0.1, 0.5}); }
 
 TEST_CASE("runge_kutta_4 has order four in single precision") {
     check_order<runge_kutta_4, problems::oscillator, float>(4, 1.0, 4,

@@ -104,9 +104,9 @@ auto interpolation_error(double theta) {
 
 /// For errors whose leading coefficient is so small that rounding dominates first: they decrease at least like h^order.
 template <class Error>
-void check_least_local_order(Error error, int order, double first_h) {
+void check_least_local_order(Error error, int order, double first_h, int halvings = 3) {
     mean_error coarse(error, order, first_h);
-    for (int i = 1; i <= 3; ++i) {
+    for (int i = 1; i <= halvings; ++i) {
         const mean_error fine(error, order, first_h / (1 << i));
         CAPTURE(first_h, i, fine.whole);
         REQUIRE(fine.whole > 10 * eps<double>);
@@ -228,8 +228,8 @@ TEST_CASE("a step of dormand_prince_8 has a local error of order nine") {
     check_solution_order<dormand_prince_8>(9, 1, 0.15);
 }
 TEST_CASE("a step of verner_9 has a local error of order ten at least") {
-    check_least_local_order(solution_error<verner_9, problems::log_circle>, 10, 4);
-    check_least_local_order(solution_error<verner_9, problems::timed_circle>, 10, 1);
+    check_least_local_order(solution_error<verner_9, problems::log_circle>, 10, 1, 2);
+    check_least_local_order(solution_error<verner_9, problems::timed_circle>, 10, 0.25, 2);
 }
 
 TEST_CASE("the embedded solution of cash_karp has a local error of order five") { check_embedded_order<cash_karp>(5); }
@@ -280,8 +280,8 @@ TEST_CASE("the interpolant of dormand_prince_8 has a local error of order eight"
 }
 TEST_CASE("the interpolant of verner_9 has a local error of order ten at least") {
     for (const double theta : {0.3, 0.5, 0.9}) {
-        check_least_local_order(interpolation_error<verner_9, problems::log_circle>(theta), 10, 4);
-        check_least_local_order(interpolation_error<verner_9, problems::timed_circle>(theta), 10, 1);
+        check_least_local_order(interpolation_error<verner_9, problems::log_circle>(theta), 10, 1, 2);
+        check_least_local_order(interpolation_error<verner_9, problems::timed_circle>(theta), 10, 0.25, 2);
     }
 }
 

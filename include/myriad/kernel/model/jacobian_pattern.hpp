@@ -177,7 +177,7 @@ constexpr pattern_origin origin_of_pattern() {
 template <class Model>
 constexpr int n_jacobian_entry_of() {
     if constexpr (n_tangent < Model >> 0) {
-        return n_jacobian_entry_of<original_of<Model>>() * (1 + 2 * Model::n_vectors);
+        return n_jacobian_entry_of<original_of<Model>>() * (1 + 2 * (n_tangent<Model> / Model::n_original));
     } else if constexpr (origin_of_pattern<Model>() == pattern_origin::found) {
         int count = 0;
         for (const auto& slope : slope_dependences_of<Model>.of_slope)
@@ -202,9 +202,10 @@ struct jacobian_entries {
         int e = 0;
         if constexpr (n_tangent < Model >> 0) {
             constexpr int n = Model::n_original;
-            for (const jacobian_entry& own : jacobian_entries<original_of<Model>>().entry) {
+            const jacobian_entries<original_of<Model>> original;  // for nvcc, whose temporary would be gone
+            for (const jacobian_entry& own : original.entry) {
                 entry[e++] = own;
-                for (int v = 1; v <= Model::n_vectors; ++v) {
+                for (int v = 1; v <= n_tangent<Model> / n; ++v) {
                     entry[e++] = {v * n + own.row, own.column};
                     entry[e++] = {v * n + own.row, v * n + own.column};
                 }
