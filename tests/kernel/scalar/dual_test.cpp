@@ -15,6 +15,7 @@
 using myriad::detail::any;
 using myriad::detail::bits;
 using myriad::detail::get_lane;
+using myriad::detail::partial;
 using myriad::detail::set_lane;
 
 namespace {
@@ -50,6 +51,15 @@ void check_derivative(const char* name, F f, G g, double x) {
         const auto plain = f(dual<T>(at, T(3)));
         check_close(plain.value, g(static_cast<wide>(at)));
         check_close(plain.derivative, 3 * slope);
+
+        // The same, and no operation with a derivative that is always zero.
+        const auto moving = f(dual<T, partial<T>>(at, T(3))), still = f(dual<T, partial<T>>(at));
+        CHECK(bits(moving.value) == bits(plain.value));
+        CHECK(bits(moving.derivative.value) == bits(plain.derivative));
+        CHECK(!moving.derivative.zero);
+        CHECK(bits(still.value) == bits(plain.value));
+        CHECK(still.derivative.zero);
+        CHECK(still.derivative == T(0));
 
         using P = pack<T, 2>;
         P lanes(T(0.25));
@@ -163,6 +173,22 @@ TEST_CASE("pow of a base zero or negative keeps a finite derivative") {
     REQUIRE(myriad::pow(dual<double>(-2, 1), dual<double>(3)).derivative == 12);
     REQUIRE(myriad::pow(zero, dual<double>(0)).derivative == 0);
     REQUIRE(myriad::pow(zero, 0.0).derivative == 0);
+}
+
+TEST_CASE("a derivative that is always zero stays zero beside infinities, and others do not see it") {
+    using number = dual<double, partial<double>>;
+    const double infinity = std::numeric_limits<double>::infinity();
+    const number still(0.0), moving(2.0, 3.0);
+    CHECK((sqrt(still) + moving).derivative == 3);  // 0 / (2 sqrt(0)) would be NaN
+    CHECK((still * number(infinity) * moving).derivative.value != 0);
+    CHECK((number(infinity) * still).derivative.zero);
+    CHECK((moving - still).derivative == 3);
+    CHECK((still - moving).derivative == -3);
+    CHECK(fma(still, moving, moving).derivative == 3);
+    CHECK(fma(number(5.0), moving, still).derivative == 15);
+    CHECK(select(true, moving, still).derivative == 3);
+    CHECK(!select(true, still, moving).derivative.zero);
+    CHECK(select(true, still, number(1.0)).derivative.zero);
 }
 
 TEST_CASE("comparisons look at values alone, and select takes values with their derivatives") {

@@ -84,6 +84,21 @@ void check_derivatives(double tolerance) {
     for (int c = 0; c < n; ++c) y[c] = std::sin(1.0 + c);
     matrix<double, n> dense;
     dual_jacobian<Model>(0.3, y, p, dense);
+    using S = pack<double, 1>;
+    inputs<Model, S> p_of_pack{};
+    p_of_pack.shared_integer = &zero;
+    if constexpr (n_parameter < Model >> 0) p_of_pack.parameter[0] = S(1.7);
+    vec<S, n> y_of_pack;
+    for (int c = 0; c < n; ++c) y_of_pack[c] = S(y[c]);
+    int written_out = 0;
+    for_each_jacobian_entry<Model, table_loop<true>>(S(0.3), y_of_pack, p_of_pack, [&](int e, const S& derivative) {
+        const auto entry = jacobian_entries_of<Model>[e];
+        for (int lane = 0; lane < S::lanes; ++lane)
+            CHECK(std::abs(get_lane(derivative, lane) - dense[entry.row][entry.column]) <=
+                  tolerance * std::abs(dense[entry.row][entry.column]));
+        ++written_out;
+    });
+    CHECK(written_out == n_jacobian_entry<Model>);
     int found = 0;
     for_each_jacobian_entry<Model, table_loop<false>>(0.3, y, p, [&](int e, double derivative) {
         const auto entry = jacobian_entries_of<Model>[e];

@@ -10,6 +10,8 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 /// namespace scope, `table` a pointer to a member of it, an array of int.
 template <bool written_out>
 struct table_loop {
+    static constexpr bool is_written_out = written_out;
+
     /// Element i of a table.
     template <const auto& tables, auto table, class I>
     static MYRIAD_FUNCTION auto at(I i) {

@@ -11,10 +11,10 @@
 namespace myriad::detail::inline MYRIAD_TARGET {
 
 /// Derivative of the right-hand side in the direction given by the derivatives of t and y.
-template <class Model, class S>
-MYRIAD_FUNCTION vec<S, n_state<Model>> directional_derivative(const dual<S>& t, const vec<dual<S>, n_state<Model>>& y,
+template <class Model, class Dual, class S>
+MYRIAD_FUNCTION vec<S, n_state<Model>> directional_derivative(const Dual& t, const vec<Dual, n_state<Model>>& y,
                                                               const inputs<Model, S>& p) {
-    const auto f = Model::template rhs<dual<S>>(t, y, p);
+    const auto f = Model::template rhs<Dual>(t, y, p);
     vec<S, n_state<Model>> out;
     MYRIAD_UNROLL_UP_TO(128)
     for (int c = 0; c < n_state<Model>; ++c) out[c] = f[c].derivative;
@@ -22,11 +22,11 @@ MYRIAD_FUNCTION vec<S, n_state<Model>> directional_derivative(const dual<S>& t, 
 }
 
 /// y as constants.
-template <class S, int n>
-MYRIAD_FUNCTION vec<dual<S>, n> constants(const vec<S, n>& y) {
-    vec<dual<S>, n> out;
+template <class Dual, class S, int n>
+MYRIAD_FUNCTION vec<Dual, n> constants(const vec<S, n>& y) {
+    vec<Dual, n> out;
     MYRIAD_UNROLL_UP_TO(128)
-    for (int c = 0; c < n; ++c) out[c] = dual<S>(y[c]);
+    for (int c = 0; c < n; ++c) out[c] = Dual(y[c]);
     return out;
 }
 
@@ -34,7 +34,7 @@ MYRIAD_FUNCTION vec<dual<S>, n> constants(const vec<S, n>& y) {
 template <class Model, class S>
 MYRIAD_FUNCTION vec<S, n_state<Model>> time_derivative(const S& t, const vec<S, n_state<Model>>& y,
                                                        const inputs<Model, S>& p) {
-    return detail::directional_derivative<Model>(dual<S>(t, S(real_of<S>(1))), constants(y), p);
+    return detail::directional_derivative<Model>(dual<S>(t, S(real_of<S>(1))), constants<dual<S>>(y), p);
 }
 
 /// df_i/dy_j in row i and column j, by one evaluation of the right-hand side with dual numbers per column. In an
@@ -44,10 +44,28 @@ MYRIAD_FUNCTION void dual_jacobian(const S& t, const vec<S, n_state<Model>>& y, 
                                    matrix<S, n_state<Model>>& jacobian) {
     constexpr int n = n_state<Model>;
     matrix_loop<S, n>::all([&](auto j) MYRIAD_LAMBDA {
-        auto seeded = constants(y);
+        auto seeded = constants<dual<S>>(y);
         seeded[j].derivative = S(real_of<S>(1));
         const auto column = detail::directional_derivative<Model>(dual<S>(t), seeded, p);
         matrix_loop<S, n>::all([&](auto i) MYRIAD_LAMBDA { jacobian[i][j] = column[i]; });
+    });
+}
+
+/// Writes the derivatives by a group of columns to their places, with no operation for what does not depend on them.
+/// For packs: nvcc gives up on a network of 48 states whose derivatives know what they depend on. Out of line, since a
+/// compiler takes more than twice as long for all groups in one function.
+template <class Model, int group, class S>
+MYRIAD_LARGE_FUNCTION void write_group(const S& t, const vec<S, n_state<Model>>& y, const inputs<Model, S>& p,
+                                       S* found) {
+    using number = dual<S, partial<S>>;
+    constexpr auto& groups = jacobian_groups_of<Model>;
+    auto seeded = constants<number>(y);
+    static_for<0, n_state<Model>>([&](auto j) MYRIAD_LAMBDA {
+        if constexpr (groups.group_of_column[decltype(j)::value] == group) seeded[j].derivative = S(real_of<S>(1));
+    });
+    const auto columns = detail::directional_derivative<Model>(number(t), seeded, p);
+    static_for<groups.begin[group], groups.begin[group + 1]>([&](auto place) MYRIAD_LAMBDA {
+        found[place] = columns[groups.row[groups.entry_of_group[decltype(place)::value]]];
     });
 }
 
@@ -68,17 +86,24 @@ MYRIAD_FUNCTION void for_each_jacobian_entry(const S& t, const vec<S, n_state<Mo
             put(e, own[Loop::template at<jacobian_groups_of<Model>, &groups::row>(e)]
                       [Loop::template at<jacobian_groups_of<Model>, &groups::column>(e)]);
         });
+    } else if constexpr (Loop::is_written_out && lanes_of<S> > 1) {
+        S found[entries];  // group by group
+        static_for<0, jacobian_groups_of<Model>.count>(
+            [&](auto group) MYRIAD_LAMBDA { detail::write_group<Model, decltype(group)::value>(t, y, p, found); });
+        static_for<0, entries>([&](auto place) MYRIAD_LAMBDA {
+            put(Loop::template at<jacobian_groups_of<Model>, &groups::entry_of_group>(place), found[place]);
+        });
     } else {
         Loop::template range<0, jacobian_groups_of<Model>.count>([&](auto group) MYRIAD_LAMBDA {
-            auto seeded = constants(y);
+            auto seeded = constants<dual<S>>(y);
             Loop::template range<0, n_state<Model>>([&](auto j) MYRIAD_LAMBDA {
                 const int its = Loop::template at<jacobian_groups_of<Model>, &groups::group_of_column>(j);
                 seeded[j].derivative = S(its == group ? R(1) : R(0));
             });
             const auto columns = detail::directional_derivative<Model>(dual<S>(t), seeded, p);
-            Loop::template range<0, entries>([&](auto e) MYRIAD_LAMBDA {
-                if (Loop::template at<jacobian_groups_of<Model>, &groups::group>(e) == group)
-                    put(e, columns[Loop::template at<jacobian_groups_of<Model>, &groups::row>(e)]);
+            Loop::template between<jacobian_groups_of<Model>, &groups::begin>(group, [&](auto place) MYRIAD_LAMBDA {
+                const auto e = Loop::template at<jacobian_groups_of<Model>, &groups::entry_of_group>(place);
+                put(e, columns[Loop::template at<jacobian_groups_of<Model>, &groups::row>(e)]);
             });
         });
     }

@@ -234,7 +234,8 @@ template <int n, int entries>
 struct jacobian_groups {
     int count = 0;
     int group_of_column[n]{};
-    int row[entries]{}, column[entries]{}, group[entries]{};  // of each entry
+    int row[entries]{}, column[entries]{};          // of each entry
+    int begin[n + 1]{}, entry_of_group[entries]{};  // the entries of each group
 
     template <class Entries>
     constexpr explicit jacobian_groups(const Entries& given) {
@@ -250,7 +251,11 @@ struct jacobian_groups {
         for (int e = 0; e < entries; ++e) {
             row[e] = given[e].row;
             column[e] = given[e].column;
-            group[e] = group_of_column[given[e].column];
+        }
+        for (int g = 0; g < count; ++g) {
+            begin[g + 1] = begin[g];
+            for (int e = 0; e < entries; ++e)
+                if (group_of_column[column[e]] == g) entry_of_group[begin[g + 1]++] = e;
         }
     }
 };

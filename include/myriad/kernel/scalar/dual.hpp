@@ -8,24 +8,26 @@
 #include "myriad/kernel/core/macros.hpp"
 #include "myriad/kernel/scalar/function_list.hpp"
 #include "myriad/kernel/scalar/math.hpp"
+#include "myriad/kernel/scalar/partial.hpp"
 #include "myriad/kernel/scalar/select.hpp"
 
 namespace myriad::inline MYRIAD_TARGET {
 
 /// value + derivative * e with e * e = 0; S is double, float or a pack, or itself dual, which gives second derivatives.
-/// Mixes with S and with what S mixes with, which are constants. Comparisons use only the values.
-template <class S>
+/// Mixes with S and with what S mixes with, which are constants. Comparisons use only the values. The derivative is
+/// another S, or a `partial<S>`.
+template <class S, class Derivative = S>
 struct dual {
     using value_type = real_of<S>;
 
     S value;
-    S derivative;
+    Derivative derivative;
 
     dual() = default;
-    MYRIAD_FUNCTION dual(const S& value_, const S& derivative_) : value(value_), derivative(derivative_) {}
-    MYRIAD_FUNCTION dual(const S& constant) : value(constant), derivative(S(value_type(0))) {}
-    MYRIAD_FUNCTION dual(value_type constant) requires(!std::is_same_v<S, value_type>)
-        : value(S(constant)), derivative(S(value_type(0))) {}
+    MYRIAD_FUNCTION dual(const S& value_, const Derivative& derivative_) : value(value_), derivative(derivative_) {}
+    MYRIAD_FUNCTION dual(const S& constant)
+        : value(constant), derivative(detail::derivative_of_constant<Derivative>::get()) {}
+    MYRIAD_FUNCTION dual(value_type constant) requires(!std::is_same_v<S, value_type>) : dual(S(constant)) {}
 
     friend MYRIAD_FUNCTION dual operator-(const dual& a) { return dual(-a.value, -a.derivative); }
     friend MYRIAD_FUNCTION dual operator+(const dual& a) { return a; }
@@ -52,11 +54,13 @@ struct dual {
     }
     using lane_type = dual<value_type>;
     static MYRIAD_FUNCTION lane_type get_lane(const dual& a, int lane) {
-        return lane_type(detail::get_lane(a.value, lane), detail::get_lane(a.derivative, lane));
+        return lane_type(detail::get_lane(a.value, lane), detail::get_lane(static_cast<const S&>(a.derivative), lane));
     }
     static MYRIAD_FUNCTION void set_lane(dual& a, int lane, const lane_type& x) {
         detail::set_lane(a.value, lane, x.value);
-        detail::set_lane(a.derivative, lane, x.derivative);
+        S derivative = a.derivative;
+        detail::set_lane(derivative, lane, x.derivative);
+        a.derivative = derivative;
     }
 };
 
@@ -64,16 +68,16 @@ struct dual {
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-template <class S>
-struct scalar_traits<dual<S>> {
+template <class S, class Derivative>
+struct scalar_traits<dual<S, Derivative>> {
     using real = real_of<S>;
     using mask = mask_of<S>;
     using integer = integer_of<S>;
     static constexpr int lanes = lanes_of<S>;
 };
 
-template <class S>
-inline constexpr int kind_rank<dual<S>> = kind_rank<S> < 2 ? 2 : kind_rank<S> + 1;
+template <class S, class Derivative>
+inline constexpr int kind_rank<dual<S, Derivative>> = kind_rank<S> < 2 ? 2 : kind_rank<S> + 1;
 
 template <class A>
 inline constexpr bool is_dual = kind_rank<A> >= 2;
@@ -88,8 +92,8 @@ inline constexpr bool is_constant_beside = kind_rank<A> < kind_rank<B>;
 
 template <class D>
 struct dual_part;
-template <class S>
-struct dual_part<dual<S>> {
+template <class S, class Derivative>
+struct dual_part<dual<S, Derivative>> {
     using type = S;
 };
 /// The kind of the numbers that a number with derivatives, or with second ones, consists of.
@@ -97,18 +101,23 @@ template <class S>
 struct underlying_kind {
     using type = S;
 };
-template <class S>
-struct underlying_kind<dual<S>> : underlying_kind<S> {};
+template <class S, class Derivative>
+struct underlying_kind<dual<S, Derivative>> : underlying_kind<S> {};
 template <class S>
 using without_derivative = typename underlying_kind<S>::type;
 
-/// The S of the `dual<S>` that is the common type of A and B.
+template <class A, class S>
+inline constexpr bool is_dual_of = false;
+template <class S, class Derivative>
+inline constexpr bool is_dual_of<dual<S, Derivative>, S> = true;
+
+/// The S of the dual number that is the common type of A and B.
 template <class A, class B>
 using part_of = typename dual_part<common_kind<A, B>>::type;
 
 template <class S, class A>
 MYRIAD_FUNCTION S value_of(const A& a) {
-    if constexpr (std::is_same_v<A, dual<S>>) {
+    if constexpr (is_dual_of<A, S>) {
         return a.value;
     } else {
         return to_kind<S>(a);
@@ -124,55 +133,59 @@ namespace myriad::inline MYRIAD_TARGET {
 // apart, as multiplying by a zero derivative is not free and turns infinities into NaN.
 template <class A, class B>
 requires detail::with_dual<A, B> MYRIAD_FUNCTION auto operator+(const A& a, const B& b) {
+    using D = detail::common_kind<A, B>;
     using S = detail::part_of<A, B>;
     const S value = detail::value_of<S>(a) + detail::value_of<S>(b);
     if constexpr (detail::is_constant_beside<B, A>) {
-        return dual<S>(value, a.derivative);
+        return D(value, a.derivative);
     } else if constexpr (detail::is_constant_beside<A, B>) {
-        return dual<S>(value, b.derivative);
+        return D(value, b.derivative);
     } else {
-        return dual<S>(value, a.derivative + b.derivative);
+        return D(value, a.derivative + b.derivative);
     }
 }
 
 template <class A, class B>
 requires detail::with_dual<A, B> MYRIAD_FUNCTION auto operator-(const A& a, const B& b) {
+    using D = detail::common_kind<A, B>;
     using S = detail::part_of<A, B>;
     const S value = detail::value_of<S>(a) - detail::value_of<S>(b);
     if constexpr (detail::is_constant_beside<B, A>) {
-        return dual<S>(value, a.derivative);
+        return D(value, a.derivative);
     } else if constexpr (detail::is_constant_beside<A, B>) {
-        return dual<S>(value, -b.derivative);
+        return D(value, -b.derivative);
     } else {
-        return dual<S>(value, a.derivative - b.derivative);
+        return D(value, a.derivative - b.derivative);
     }
 }
 
 template <class A, class B>
 requires detail::with_dual<A, B> MYRIAD_FUNCTION auto operator*(const A& a, const B& b) {
+    using D = detail::common_kind<A, B>;
     using S = detail::part_of<A, B>;
     const S u = detail::value_of<S>(a);
     const S v = detail::value_of<S>(b);
     if constexpr (detail::is_constant_beside<B, A>) {
-        return dual<S>(u * v, a.derivative * v);
+        return D(u * v, a.derivative * v);
     } else if constexpr (detail::is_constant_beside<A, B>) {
-        return dual<S>(u * v, u * b.derivative);
+        return D(u * v, u * b.derivative);
     } else {
-        return dual<S>(u * v, a.derivative * v + u * b.derivative);
+        return D(u * v, a.derivative * v + u * b.derivative);
     }
 }
 
 template <class A, class B>
 requires detail::with_dual<A, B> MYRIAD_FUNCTION auto operator/(const A& a, const B& b) {
+    using D = detail::common_kind<A, B>;
     using S = detail::part_of<A, B>;
     const S v = detail::value_of<S>(b);
     const S quotient = detail::value_of<S>(a) / v;
     if constexpr (detail::is_constant_beside<B, A>) {
-        return dual<S>(quotient, a.derivative / v);
+        return D(quotient, a.derivative / v);
     } else if constexpr (detail::is_constant_beside<A, B>) {
-        return dual<S>(quotient, -quotient * b.derivative / v);
+        return D(quotient, -quotient * b.derivative / v);
     } else {
-        return dual<S>(quotient, (a.derivative - quotient * b.derivative) / v);
+        return D(quotient, (a.derivative - quotient * b.derivative) / v);
     }
 }
 
@@ -189,9 +202,9 @@ MYRIAD_COMPARISONS(MYRIAD_DUAL_COMPARISON)
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-template <class S>
-struct functions<dual<S>> {
-    using D = dual<S>;
+template <class S, class Derivative>
+struct functions<dual<S, Derivative>> {
+    using D = dual<S, Derivative>;
     using f = functions<S>;
     using real = real_of<S>;
 
@@ -296,7 +309,7 @@ struct functions<dual<S>> {
     static MYRIAD_FUNCTION D pow(const D& x, const D& y) {
         const D of_base = pow_of_base(x, y.value);
         // With a constant exponent, the logarithm of a non-positive base must not spoil the result.
-        const S of_exponent = of_base.value * f::log(x.value) * y.derivative;
+        const auto of_exponent = of_base.value * f::log(x.value) * y.derivative;
         return D(of_base.value,
                  of_base.derivative + select(y.derivative == constant(real(0)), y.derivative, of_exponent));
     }
@@ -326,7 +339,7 @@ struct functions<dual<S>> {
     }
     static MYRIAD_FUNCTION D fma(const D& a, const D& b, const D& c) {
         return D(f::fma(a.value, b.value, c.value),
-                 f::fma(a.derivative, b.value, f::fma(a.value, b.derivative, c.derivative)));
+                 add_product(a.derivative, b.value, add_product(a.value, b.derivative, c.derivative)));
     }
     static MYRIAD_FUNCTION auto is_finite(const D& x) { return f::is_finite(x.value) && f::is_finite(x.derivative); }
 

@@ -227,9 +227,10 @@ MYRIAD_FUNCTION mask_of<S> factorise_stage_matrix(const S& t, const S& per_h, co
         lu.a[place] = lu.a[place] + term;
         if constexpr (i == mass_column<Model, entry>) lu.size[i] = lu.size[i] + abs(term);
     });
-    detail::for_each_jacobian_entry<Model, loop>(t, y, p, [&](auto e, const S& derivative) MYRIAD_LAMBDA {
-        const auto place = lu_type::template at<&tables::position>(e);
-        const auto row = lu_type::template at<&tables::pivot_row>(e);
+    using entry_loop = table_loop<writes_out_jacobian<Model, S>>;
+    detail::for_each_jacobian_entry<Model, entry_loop>(t, y, p, [&](auto e, const S& derivative) MYRIAD_LAMBDA {
+        const auto place = entry_loop::template at<lu_tables_of<Model>, &tables::position>(e);
+        const auto row = entry_loop::template at<lu_tables_of<Model>, &tables::pivot_row>(e);
         lu.a[place] = lu.a[place] - derivative;
         if (row >= 0) lu.size[row] = lu.size[row] + abs(derivative);
     });

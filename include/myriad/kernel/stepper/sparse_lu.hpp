@@ -176,14 +176,30 @@ inline constexpr int n_factor_entry = n_factor_entry_of<Model>();
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
+// What packs write out: loops through tables wait for each sum, which is stored and read again. Longer code than this
+// takes a compiler too long.
+
+/// Most operations of a factorisation and a solve.
+inline constexpr int most_pack_operations = 1024;
+/// Most slopes, of all evaluations of rhs for the Jacobian.
+inline constexpr int most_pack_slopes = 512;
+
+/// Whether the code of factorisation and solves is written out. That for one lane always is: its numbers lie in
+/// registers or at fixed places of a GPU's local memory.
+template <class Model, class S>
+inline constexpr bool writes_out_factors =
+    lanes_of<S> == 1 || symbolic_lu_of<Model>.updates + n_factor_entry<Model> <= most_pack_operations;
+/// Whether that of the Jacobian is.
+template <class Model, class S>
+inline constexpr bool writes_out_jacobian =
+    lanes_of<S> == 1 || jacobian_groups_of<Model>.count* n_state<Model> <= most_pack_slopes;
+
 /// The matrix, replaced by its factors in `factorise`: the multipliers below the pivots, the reciprocals of the pivots,
 /// and what is right of them.
 template <class Model, class S>
 struct sparse_lu_factors {
     using tables = std::remove_cv_t<decltype(lu_tables_of<Model>)>;
-    /// For one lane the numbers lie in registers or at fixed places of a GPU's local memory. Those of a pack are cache
-    /// lines each, which loops cost nothing beside.
-    using loop = table_loop<lanes_of<S> == 1>;
+    using loop = table_loop<writes_out_factors<Model, S>>;
     /// Element i of a table.
     template <auto table, class I>
     static MYRIAD_FUNCTION auto at(I i) {
@@ -256,7 +272,7 @@ MYRIAD_FUNCTION mask_of<S> factorise(sparse_lu_factors<Model, S>& lu, Keep&& kee
 
 /// Solves A x = b with the entries of A's factors; x replaces b.
 template <class Model, class S>
-MYRIAD_FUNCTION void solve_factorised(const S* a, vec<S, n_state<Model>>& b) {
+MYRIAD_FUNCTION void solve_in_place(const S* a, vec<S, n_state<Model>>& b) {
     using lu_type = sparse_lu_factors<Model, S>;
     using tables = typename lu_type::tables;
     using loop = typename lu_type::loop;
@@ -276,6 +292,21 @@ MYRIAD_FUNCTION void solve_factorised(const S* a, vec<S, n_state<Model>>& b) {
         });
         b[row] = x * a[lu_type::template at<&tables::diagonal>(row)];
     });
+}
+/// The same out of line, as it is called in each stage. All of x stays in registers.
+template <class Model, class S>
+MYRIAD_LARGE_FUNCTION void solve_out_of_line(const S* a, vec<S, n_state<Model>>& b) {
+    auto x = b;
+    solve_in_place<Model>(a, x);
+    b = x;
+}
+template <class Model, class S>
+MYRIAD_FUNCTION void solve_factorised(const S* a, vec<S, n_state<Model>>& b) {
+    if constexpr (lanes_of < S >> 1 && writes_out_factors<Model, S>) {
+        solve_out_of_line<Model>(a, b);
+    } else {
+        solve_in_place<Model>(a, b);
+    }
 }
 template <class Model, class S>
 MYRIAD_FUNCTION void solve_factorised(const sparse_lu_factors<Model, S>& lu, vec<S, n_state<Model>>& b) {
