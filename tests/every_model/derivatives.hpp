@@ -144,7 +144,7 @@ private:
         if constexpr (detail::factorises_sparsely<Model>) compare_solutions(found, *by_duals, t, y, p);
     }
 
-    /// The sparse factors solve what the dense ones do, in packs, for which they are no straight-line code.
+    /// The sparse factors solve what the dense ones do, in packs, with derivatives that know whether they are zero.
     static void compare_solutions(outcome& found, const dense& jacobian, R t, const myriad::vec<R, n>& at,
                                   const myriad::inputs<Model, R>& inputs) {
         using S = myriad::pack<R, 1>;

@@ -52,7 +52,7 @@ MYRIAD_FUNCTION void dual_jacobian(const S& t, const vec<S, n_state<Model>>& y, 
 }
 
 /// Writes the derivatives by a group of columns to their places, with no operation for what does not depend on them.
-/// For packs: nvcc gives up on a network of 48 states whose derivatives know what they depend on. Out of line, since a
+/// For packs: nvcc gave up on a network of 48 states whose derivatives know what they depend on. Out of line, since a
 /// compiler takes more than twice as long for all groups in one function.
 template <class Model, int group, class S>
 MYRIAD_LARGE_FUNCTION void write_group(const S& t, const vec<S, n_state<Model>>& y, const inputs<Model, S>& p,
