@@ -1,4 +1,4 @@
-// expect: cannot convert .*dual<double>.* to .const double|no viable conversion from .*dual<double>
+// expect: cannot convert .*dual<double.* to .const double|no viable conversion from .*dual<double
 // SPDX-License-Identifier: MIT
 // An action that converts the state to a plain number loses the derivative that moves the tangents.
 #include "myriad/instantiate.hpp"
