@@ -114,3 +114,21 @@ def test_runs_without_sensitivities_say_how_to_get_them():
     run = my.solve(spring, {k: K, B: 0.5}, start={x: 1, v: 0}, time=(0, 2), interpreted=True)
     with pytest.raises(my.Error, match="give sensitivities= to solve"):
         run.sensitivity  # noqa: B018
+
+
+def test_stiff_methods_have_the_sensitivities_of_robertsons_reactions():
+    a, b, c = my.states("a b c")
+    rates = my.parameters("k1 k2 k3")
+    k1, k2, k3 = rates
+    robertson = my.model({a: -k1 * a + k3 * b * c, b: k1 * a - k3 * b * c - k2 * b * b, c: k2 * b * b},
+                         name="robertson")
+    at = {k1: 0.04, k2: 3e7, k3: 1e4}
+    call = dict(start={a: 1, b: 0, c: 0}, time=(0, 40), method="rodas_5p", rtol=1e-10, atol=1e-14)
+    run = my.solve(robertson, at, sensitivities=rates, **call)
+    near = {k: np.array([-2, -1, 1, 2]) * 1e-4 * at[k] for k in rates}
+    for k in rates:
+        values = my.solve(robertson, {**at, k: at[k] + near[k]}, **call)
+        for state in (a, b, c):
+            f = values[state]
+            expected = (8 * (f[2] - f[1]) - (f[3] - f[0])) / (12 * near[k][2])
+            np.testing.assert_allclose(run.sensitivity[state, k], expected, rtol=5e-6)
