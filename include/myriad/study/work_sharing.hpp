@@ -15,9 +15,9 @@ namespace myriad::studies::inline MYRIAD_ABI {
 
 /// Rates of devices, and what follows from them. Devices are numbered as they were given; all functions may be called
 /// by several threads. Where all devices are equal GPUs, or there is one, each takes chunk after chunk as a whole.
-/// Otherwise a device integrates its first chunk in parts, of which the first is small, until its rate is known, and a
-/// CPU every chunk: it gives a chunk back as soon as the others would be done with all that is left before it. A CPU
-/// beside a GPU is not even tried where the GPU is soon done, since it costs some milliseconds to find out its rate.
+/// Otherwise a CPU integrates every chunk in parts, and a GPU beside one of another kind its first chunk, until its
+/// rate is known. A CPU gives a chunk back as soon as the others would be done with all that is left before it. Beside
+/// a GPU that is soon done it is not even tried, since it costs some milliseconds to find out its rate.
 class work_sharing {
 public:
     /// `tried_after`: seconds that the GPUs have taken, or have left, before a CPU beside them is tried.
