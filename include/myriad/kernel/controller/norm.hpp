@@ -91,7 +91,7 @@ MYRIAD_FUNCTION error_scale<S, n_state<Model>> scale_of_errors(const kernel_argu
     S largest = S(real_of<S>(0));  // may skip NaN
     MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
     for (int c = 0; c < n_state<Model>; ++c) {
-        const S atol = S(args.absolute_tolerance[c]), rtol = S(args.relative_tolerance[c]);
+        const S atol = S(detail::absolute_tolerance_of(args, c)), rtol = S(detail::relative_tolerance_of(args, c));
         const S size = larger_magnitude(y[c], y1[c]);
         if constexpr (!tells_infinity<S>) largest = c == 0 ? size : larger(largest, size);
         if constexpr (adds_tolerances<Method>) {
@@ -141,11 +141,12 @@ MYRIAD_FUNCTION error_norm<S> scaled_error(const kernel_arguments<Model, real_of
     const auto scale = detail::scale_of_errors<Method, Model>(args, y, trial.y);
     const auto worst_of = [&](auto row) MYRIAD_LAMBDA {
         constexpr int weights = decltype(row)::value;
-        return error_over_tolerance<Method>(scale.of, detail::error_factor<Method, weights>(h),
-                                            [&](int c)
-                                                MYRIAD_LAMBDA { return detail::error_sum<Method, weights>(trial, c); });
+        return team_for<Model>::largest(error_over_tolerance<Method>(
+            scale.of, detail::error_factor<Method, weights>(h),
+            [&](int c) MYRIAD_LAMBDA { return detail::error_sum<Method, weights>(trial, c); }));
     };
     error_norm<S> norm{worst_of(constant_index<row_of<Method>::error>{}), scale.finite};
+    if constexpr (!tells_infinity<S>) norm.finite = team_for<Model>::all(norm.finite);
     if constexpr (has_coarse_estimate<Method>) {
         using C = control_of<S>;
         using R = real_of<C>;
