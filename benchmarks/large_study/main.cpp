@@ -31,11 +31,15 @@ using study = myriad::study<model, myriad::runge_kutta_4>;
 
 struct settings {
     std::string device = "auto", keep;
+    std::vector<std::string> beside;
+    int repetitions = 1;
     std::int64_t instances = 1'000'000'000, small = 10'000'000, chunk = 0;
     bool progress = false;
 };
 
-void describe(study& s, const settings& chosen, std::int64_t instances) {
+using devices = std::vector<myriad::device>;
+
+void describe(study& s, const settings& chosen, std::int64_t instances, const devices& used) {
     s.repeat(instances);
     s.set("rho", 28);
     s.time_domain(0, 0.1);
@@ -45,7 +49,7 @@ void describe(study& s, const settings& chosen, std::int64_t instances) {
     s.keep.status = false;
     s.reduce(myriad::histogram_of("x_end", myriad::linspace(-20, 20, 129)));
     s.reduce(myriad::mean_of("x_end"));
-    s.devices = {myriad::device::parse(chosen.device)};
+    s.devices = used;
     s.chunk = chosen.chunk;
     if (chosen.progress) s.progress = myriad::progress_line();
 }
@@ -83,37 +87,63 @@ double counted(const myriad::study_result& r) {
     return sum;
 }
 
+double median_of(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return values[values.size() / 2];
+}
+
 int run(const settings& chosen) {
     bool agrees = true;
-    const auto reduced = [&](std::int64_t instances) {
+    const devices alone{myriad::device::parse(chosen.device)};
+    devices together = alone;
+    for (const std::string& name : chosen.beside) together.push_back(myriad::device::parse(name));
+    const auto reduced = [&](std::int64_t instances, const devices& used) {
         study s;
-        describe(s, chosen, instances);
+        describe(s, chosen, instances, used);
         const myriad::study_result r = s.run();
         agrees = agrees && r.complete && counted(r) == static_cast<double>(instances);
         return r;
     };
-    (void)reduced(std::min<std::int64_t>(chosen.small, 1'000'000));  // creates what the device needs once
+    // Creates what the devices need once.
+    (void)reduced(std::min<std::int64_t>(chosen.small, 1'000'000), together);
     std::vector<double> times;
-    for (int repetition = 0; repetition < 3; ++repetition) times.push_back(reduced(chosen.small).seconds);
-    std::sort(times.begin(), times.end());
-    const double small = times[1] / static_cast<double>(chosen.small);
+    for (int repetition = 0; repetition < 3; ++repetition) times.push_back(reduced(chosen.small, alone).seconds);
+    const double small = median_of(times) / static_cast<double>(chosen.small);
 
-    const myriad::study_result all = reduced(chosen.instances);
-    const double large = all.seconds / static_cast<double>(chosen.instances);
-    std::cout << "device: " << myriad::device::parse(chosen.device).description() << '\n'
-              << chosen.small << " instances, reduced: " << 1e9 * small << " ns each, " << times[1] << " s (median of "
+    myriad::study_result all = reduced(chosen.small, alone);
+    std::vector<double> seconds, seconds_together;
+    for (int repetition = 0; repetition < chosen.repetitions; ++repetition) {
+        all = reduced(chosen.instances, alone);
+        seconds.push_back(all.seconds);
+        if (chosen.beside.empty()) continue;
+        const myriad::study_result more = reduced(chosen.instances, together);
+        seconds_together.push_back(more.seconds);
+        agrees = agrees && more.values("x_end_histogram") == all.values("x_end_histogram") &&
+                 more.values("x_end_mean") == all.values("x_end_mean");
+    }
+    const double taken = median_of(seconds);
+    const double large = taken / static_cast<double>(chosen.instances);
+    std::cout << "device: " << alone[0].description() << '\n'
+              << chosen.small << " instances, reduced: " << 1e9 * small << " ns each, " << median_of(times) << " s (median of "
               << times.size() << ")\n"
-              << chosen.instances << " instances, reduced: " << 1e9 * large << " ns each, " << all.seconds << " s; "
+              << chosen.instances << " instances, reduced: " << 1e9 * large << " ns each, " << taken << " s (median of "
+              << seconds.size() << "); "
               << large / small << " times as long per instance\n"
               << "most memory of the host: " << most_memory() << " GB\n"
               << "mean of x: " << all.values("x_end_mean")[0] << '\n';
+    if (!chosen.beside.empty()) {
+        std::cout << "with";
+        for (std::size_t d = 1; d < together.size(); ++d) std::cout << ' ' << together[d].name();
+        std::cout << " beside it: " << median_of(seconds_together) << " s, " << median_of(seconds_together) / taken
+                  << " times as long\n";
+    }
     if (!chosen.keep.empty()) {
         const std::string folder = chosen.keep + "/large_study";
         std::filesystem::remove_all(folder);
         std::filesystem::create_directories(folder);
         const double disk = disk_rate(folder);
         study s;
-        describe(s, chosen, chosen.instances);
+        describe(s, chosen, chosen.instances, alone);
         s.keep.end = {"x"};
         s.store(folder + "/store");
         const myriad::study_result r = s.run();
@@ -122,7 +152,7 @@ int run(const settings& chosen) {
                  r.values("x_end_mean") == all.values("x_end_mean");
         std::cout << "x of each kept: " << bytes << " GB in " << r.seconds << " s, " << bytes / r.seconds
                   << " GB/s; the disk took a single file at " << disk << " GB/s, and computing alone would give "
-                  << bytes / all.seconds << " GB/s: the " << (bytes / all.seconds > disk ? "disk" : "computation")
+                  << bytes / taken << " GB/s: the " << (bytes / taken > disk ? "disk" : "computation")
                   << " is the limit\n"
                   << "most memory of the host: " << most_memory() << " GB\n";
         std::filesystem::remove_all(folder);
@@ -139,6 +169,10 @@ int main(int argc, char** argv) {
     app.add_option("--instances", chosen.instances, "instances of the large study")->capture_default_str();
     app.add_option("--small", chosen.small, "instances of the small one")->capture_default_str();
     app.add_option("--device", chosen.device, "auto, cpu, cpu:2, cuda, cuda:1")->capture_default_str();
+    app.add_option("--beside", chosen.beside, "devices that take part in a second study")->delimiter(',');
+    app.add_option("--repetitions", chosen.repetitions, "of the large study, of which the median counts")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
     app.add_option("--chunk", chosen.chunk, "instances of a chunk; 0: as the study chooses")->capture_default_str();
     app.add_option("--keep", chosen.keep, "a folder in which x of each instance is kept for a while");
     app.add_flag("--progress", chosen.progress, "show progress");

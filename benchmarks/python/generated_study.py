@@ -8,6 +8,7 @@ With --check exit status 1 if it takes longer or more memory than it should on a
 
 import argparse
 import resource
+import statistics
 import sys
 
 import myriad as my
@@ -29,19 +30,31 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--instances", type=int, default=1_000_000_000, help="default: 1000000000")
     parser.add_argument("--device", default="cuda", help="default: cuda")
+    parser.add_argument("--beside", nargs="+", default=[], help="devices that take part in a second study, as cpu")
+    parser.add_argument("--repetitions", type=int, default=1, help="of which the median counts; default: 1")
     parser.add_argument("--check", action="store_true",
                         help="exit status 1 if it takes longer or more memory than it should on an H200")
     options = parser.parse_args()
-    study(min(options.instances, 1_000_000)).run(device=options.device)  # compiles, and creates what the device needs
-    result = study(options.instances).run(device=options.device)
+    together = [options.device, *options.beside]
+    study(min(options.instances, 1_000_000)).run(device=together)  # compiles, and creates what the devices need
+    seconds, seconds_together = [], []
+    for _ in range(options.repetitions):
+        result = study(options.instances).run(device=options.device)
+        seconds.append(result.seconds)
+        if options.beside:
+            seconds_together.append(study(options.instances).run(device=together).seconds)
+    taken = statistics.median(seconds)
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024 / 1e9
     counted = result["x_end_histogram"].sum() + result["x_end_outside"].sum()
-    print(f"{options.instances} instances: {result.seconds:.3f} s, {1e9 * result.seconds / options.instances:.3f} ns "
+    print(f"{options.instances} instances: {taken:.4f} s, {1e9 * taken / options.instances:.3f} ns "
           f"each; most memory of the host: {memory:.2f} GB; mean of x: {result['x_end_mean']:.6f}")
+    if options.beside:
+        print(f"with {' '.join(options.beside)} beside it: {statistics.median(seconds_together):.4f} s, "
+              f"{statistics.median(seconds_together) / taken:.4f} times as long")
     wrong = not result.complete or counted != options.instances
     if wrong:
         print("WRONG: instances are missing", file=sys.stderr)
-    slow = options.check and (result.seconds > SECONDS or memory > GIGABYTES)
+    slow = options.check and (taken > SECONDS or memory > GIGABYTES)
     if slow:
         print(f"may take {SECONDS} s and {GIGABYTES} GB", file=sys.stderr)
     return int(wrong or slow)

@@ -18,6 +18,7 @@
 // limit: integrate_ensemble<sparse_chain<32>, rosenbrock_23> stack 3000
 // limit: integrate_ensemble<sparse_chain<32>, rodas_5p> stack 300
 // limit: integrate_ensemble<van_der_pol_ring<32>, rodas_5p> stack 100
+// limit: integrate_ensemble<van_der_pol_ring<64>, rodas_5p> stack 3700
 // forbid: f64 in integrate_ensemble<chain<3>, rosenbrock_23>
 // forbid: f64 in integrate_ensemble<chain<3>, rodas_5p>
 
@@ -80,3 +81,5 @@ INSTANTIATE(sparse_chain<8>, double)
 INSTANTIATE(sparse_chain<32>, double)
 using problems::van_der_pol_ring;  // whose pattern is found
 INSTANTIATE(van_der_pol_ring<32>, double)
+template __global__ void myriad::detail::integrate_ensemble<van_der_pol_ring<64>, myriad::rodas_5p, double, constant>(
+    const __grid_constant__ myriad::detail::launch_arguments<van_der_pol_ring<64>, double, constant>);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Where a Rosenbrock step whose stages are a loop keeps its stages and factors: with the thread's own variables, or in
-// the shared memory of its block.
+// Where a Rosenbrock step whose stages are a loop keeps its stages and its factors: with the thread's own variables, or
+// in the shared memory of its block.
 #pragma once
 
 #include "myriad/kernel/stepper/rosenbrock.hpp"
@@ -39,19 +39,22 @@ constexpr bool fills_registers() {
     return false;
 }
 
-/// What a thread has in the shared memory of its block.
+/// What a thread has in the shared memory of its block: the stages, and with them the factors if there is room.
 template <class Method, class Model, class R>
-struct step_memory {
+struct stage_memory {
     vec<vec<R, n_state<Model>>, Method::stages> u;
     vec<R, n_state<Model>> argument;  // of a stage, and the new state
+};
+template <class Method, class Model, class R>
+struct step_memory : stage_memory<Method, Model, R> {
     R factor[n_factor_entry<Model>];
 };
 /// Bytes from one thread's to the next one's: an odd number of words of R, so that no two threads of a warp meet in a
 /// bank.
-template <class Method, class Model, class R>
-inline constexpr int step_memory_stride = static_cast<int>((sizeof(step_memory<Method, Model, R>) / sizeof(R) | 1) *
-                                                           sizeof(R));
-/// Largest such stride. 1000 rings of 64 states, 7.5 kB a thread, are slower there: 63 instead of 55 ms on an H100.
+template <class Memory, class R>
+inline constexpr int step_memory_stride = static_cast<int>((sizeof(Memory) / sizeof(R) | 1) * sizeof(R));
+/// Largest such stride. 1000 rings of 64 states, NVIDIA H100: 63 ms with all 7.5 kB of a thread there, 34 with the stages
+/// alone, 4.6 kB, and 55 without.
 inline constexpr int largest_step_memory_stride = 4800;
 
 template <class Method, class Model, class R>
@@ -60,8 +63,11 @@ constexpr int shared_step_bytes_of() {
     if constexpr (rosenbrock_method<Method>) {
         if constexpr (loops_over_stages<Method, Model, R>) {
             constexpr int in_registers = static_cast<int>(sizeof(R)) * (n_factor_entry<Model> + 3 * n_state<Model>);
-            constexpr int stride = step_memory_stride<Method, Model, R>;
-            if (in_registers > register_bytes && stride <= largest_step_memory_stride) return stride;
+            constexpr int all = step_memory_stride<step_memory<Method, Model, R>, R>;
+            constexpr int stages = step_memory_stride<stage_memory<Method, Model, R>, R>;
+            if (in_registers <= register_bytes) return 0;
+            if (all <= largest_step_memory_stride) return all;
+            if (stages <= largest_step_memory_stride) return stages;
         }
     }
 #endif
@@ -75,15 +81,20 @@ template <class Method, class Model, class R>
 inline constexpr int shared_step_bytes = shared_step_bytes_of<Method, Model, R>();
 
 #if defined(__CUDACC__)
-/// This thread's, the first in the block's shared memory.
+/// Whether the factors lie there, too.
 template <class Method, class Model, class R>
-__host__ __device__ __forceinline__ step_memory<Method, Model, R>& step_memory_of_thread() {
+inline constexpr bool shares_factors = shared_step_bytes<Method, Model, R> ==
+                                       step_memory_stride<step_memory<Method, Model, R>, R>;
+
+/// This thread's, the first in the block's shared memory.
+template <class Memory, int bytes_of_thread>
+__host__ __device__ __forceinline__ Memory& step_memory_of_thread() {
 #if defined(__CUDA_ARCH__)
     extern __shared__ double of_block[];  // double: aligned for either real type
-    auto* const bytes = reinterpret_cast<char*>(of_block) + threadIdx.x * shared_step_bytes<Method, Model, R>;
-    return *reinterpret_cast<step_memory<Method, Model, R>*>(bytes);
+    auto* const bytes = reinterpret_cast<char*>(of_block) + threadIdx.x * bytes_of_thread;
+    return *reinterpret_cast<Memory*>(bytes);
 #else
-    return *static_cast<step_memory<Method, Model, R>*>(nullptr);  // never called
+    return *static_cast<Memory*>(nullptr);  // never called
 #endif
 }
 #endif
@@ -110,22 +121,28 @@ private:
 };
 
 #if defined(__CUDACC__)
-/// Both in the shared memory of the block.
+/// Stages in the shared memory of the block, and factors there or in variables.
 template <class Method, class Model, class R>
 class shared_step {
 public:
     static constexpr int n = n_state<Model>;
     MYRIAD_FUNCTION explicit shared_step(trial_step<Method, R, n>& trial)
-        : trial_(trial), memory_(step_memory_of_thread<Method, Model, R>()) {}
+        : trial_(trial), memory_(step_memory_of_thread<memory, shared_step_bytes<Method, Model, R>>()) {}
 
     MYRIAD_FUNCTION vec<vec<R, n>, Method::stages>& u() { return memory_.u; }
     MYRIAD_FUNCTION vec<R, n>& argument() { return memory_.argument; }
     MYRIAD_FUNCTION const vec<R, n>& solved(int i, const vec<R, n>&) { return memory_.u[i]; }
     template <class I>
     MYRIAD_FUNCTION void keep(I entry, const R& value) {
-        memory_.factor[entry] = value;
+        if constexpr (shares_factors<Method, Model, R>) memory_.factor[entry] = value;
     }
-    MYRIAD_FUNCTION const R* factors(const sparse_lu_factors<Model, R>&) { return memory_.factor; }
+    MYRIAD_FUNCTION const R* factors(const sparse_lu_factors<Model, R>& lu) {
+        if constexpr (shares_factors<Method, Model, R>) {
+            return memory_.factor;
+        } else {
+            return lu.a;
+        }
+    }
     /// From here on nothing that was written there is known from registers, which nvcc would fill with it, and spill.
     MYRIAD_FUNCTION void read_again() { MYRIAD_MEMORY_BARRIER; }
     /// The stages are the trial step's, of which only what is used later is copied.
@@ -137,8 +154,10 @@ public:
     }
 
 private:
+    using memory = std::conditional_t<shares_factors<Method, Model, R>, step_memory<Method, Model, R>,
+                                      stage_memory<Method, Model, R>>;
     trial_step<Method, R, n>& trial_;
-    step_memory<Method, Model, R>& memory_;
+    memory& memory_;
 };
 template <class Method, class Model, class R>
 using step_storage = std::conditional_t<(shared_step_bytes<Method, Model, R> > 0), shared_step<Method, Model, R>,
