@@ -50,8 +50,7 @@ void compare(const myriad::options& options) {
         const auto by_team = integrate<Method>(together, options);
         CHECK(alone.accepted_steps().minCoeff() > 3);
         compare(alone, together);
-        for (int c = 0; c < Alone::n_state; ++c)
-            CHECK((by_one.records.state(c) == by_team.records.state(c)).all());
+        for (int c = 0; c < Alone::n_state; ++c) CHECK((by_one.records.state(c) == by_team.records.state(c)).all());
     }
 }
 /// Another one for each component, so that a wrong one shows.

@@ -5,11 +5,11 @@
 #include <cstdlib>
 #include <cstring>
 
+#include <myriad/instantiate.hpp>
 #include <ucontext.h>
 
-#include <myriad/instantiate.hpp>
-
-#include "myriad/kernel/model/part_of_units.hpp"
+#include "myriad/kernel/integrator/integrate.hpp"
+#include "myriad/kernel/integrator/team_choice.hpp"
 #include "tests/kernel/model/teams.hpp"
 
 namespace {
@@ -117,12 +117,12 @@ run_statistics run_in_teams(const any_arguments<double>& from, const run_options
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET
 
-#define INTEGRATE_IN_TEAMS(Model, Method, threads)                                                                    \
-    template <>                                                                                                       \
-    myriad::detail::run_statistics myriad::openmp::run_on<Model<threads>, Method, double>(                            \
-        for_set<instruction_set::MYRIAD_INSTRUCTION_SET>, const any_arguments<double>& arguments,                     \
-        const run_options& options) {                                                                                 \
-        return myriad::detail::run_in_teams<Model<threads>, Method, threads>(arguments, options);                     \
+#define INTEGRATE_IN_TEAMS(Model, Method, threads)                                                \
+    template <>                                                                                   \
+    myriad::detail::run_statistics myriad::openmp::run_on<Model<threads>, Method, double>(        \
+        for_set<instruction_set::MYRIAD_INSTRUCTION_SET>, const any_arguments<double>& arguments, \
+        const run_options& options) {                                                             \
+        return myriad::detail::run_in_teams<Model<threads>, Method, threads>(arguments, options); \
     }
 INTEGRATE_IN_TEAMS(teams::places, teams::with_memory, 4)
 INTEGRATE_IN_TEAMS(teams::places, teams::with_memory, 16)

@@ -10,7 +10,7 @@
 #include "myriad/cuda/local_memory.cuh"
 #include "myriad/kernel/core/stop_request.hpp"
 #include "myriad/kernel/integrator/integrate.hpp"
-#include "myriad/kernel/model/part_of_units.hpp"
+#include "myriad/kernel/integrator/team_choice.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
@@ -166,7 +166,7 @@ struct launch_arguments<Model, R, shared_placement::constant_bank> {
 /// Bytes of shared memory that a block, and each of its threads, take.
 template <class Model, class R>
 constexpr int find_bytes_of_block() {
-    if constexpr (team_size<Model> > 1) {
+    if constexpr (team_size < Model >> 1) {
         return Model::template bytes_of_block<R>;
     } else {
         return 0;
@@ -176,7 +176,7 @@ template <class Model, class R>
 inline constexpr int bytes_of_block = find_bytes_of_block<Model, R>();
 template <class Model, class Method, class R>
 constexpr int find_bytes_of_thread() {
-    if constexpr (team_size<Model> > 1) {
+    if constexpr (team_size < Model >> 1) {
         return Model::template bytes_of_thread<R>;
     } else {
         return shared_step_bytes<Method, Model, R>;
@@ -195,10 +195,11 @@ inline constexpr cuda::kernel_traits traits_of{numbers_of<whole_of<Model>>,
                                                bytes_of_block<Model, R>,
                                                team_size<Model>};
 template <class Model, class R, shared_placement placement>
-constexpr bool is_laid_out =
-    sizeof(launch_arguments<Model, R, placement>) == cuda::launch_offsets<R>(numbers_of<whole_of<Model>>).bytes(placement);
+constexpr bool is_laid_out = sizeof(launch_arguments<Model, R, placement>) ==
+                             cuda::launch_offsets<R>(numbers_of<whole_of<Model>>).bytes(placement);
 
-/// Copies the shared parameters to the block's shared memory, behind what it and its threads take, with all its threads.
+/// Copies the shared parameters to the block's shared memory, behind what it and its threads take, with all its
+/// threads.
 template <class Model, class Method, class R>
 __device__ __forceinline__ shared_parameters<R> stage_shared(const shared_parameters<R>& from) {
     extern __shared__ double staged[];  // double: aligned for either real type

@@ -37,6 +37,7 @@ public:
         : kernels_(std::move(kernels)), offsets_(kernels_.traits.model) {
         int limit = 0;
         MYRIAD_CUDA(cudaDeviceGetAttribute(&limit, cudaDevAttrMaxSharedMemoryPerBlockOptin, device));
+        facts_.threads_per_instance = traits().team;
         const int bytes = traits().shared_bytes;
         const bool fits = bytes + traits().block_bytes + smallest_block() * traits().step_bytes <= limit;
         facts_.shared_placement = wanted.shared_placement;

@@ -45,8 +45,8 @@ MYRIAD_FUNCTION S step_by_curvature(const kernel_arguments<Model, real_of<S>>& a
     S scale[n], d0 = S(R(0)), d1 = S(R(0)), d2 = S(R(0));
     MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
     for (int c = 0; c < n; ++c) {
-        scale[c] = fma(S(detail::relative_tolerance_of(args, c)), abs(s.data.y[c]),
-                       S(detail::absolute_tolerance_of(args, c)));
+        scale[c] =
+            fma(S(detail::relative_tolerance_of(args, c)), abs(s.data.y[c]), S(detail::absolute_tolerance_of(args, c)));
         if constexpr (scales_tolerances<Method>) scale[c] = scale[c] * s.steps.tolerance_scale;
         d0 = larger(abs(s.data.y[c]) / scale[c], d0);
         d1 = larger(abs(slope0[c]) / scale[c], d1);

@@ -9,14 +9,12 @@
 // results have the same bits for every number of threads.
 #pragma once
 
+#include <cstdint>
 #include <type_traits>
 
 #include "myriad/kernel/core/team.hpp"
-#include "myriad/kernel/methods/controller_policies.hpp"
-#include "myriad/kernel/methods/dense.hpp"
+#include "myriad/kernel/core/vec.hpp"
 #include "myriad/kernel/model/coupled_units.hpp"
-#include "myriad/kernel/state/kernel_arguments.hpp"
-#include "myriad/kernel/stepper/rosenbrock.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
@@ -106,7 +104,7 @@ struct part_of_units {
     template <class R>
     static constexpr int bytes_of_block = 2 * detail::n_state<Whole>* static_cast<int>(sizeof(R));
     template <class R>
-    static constexpr int bytes_of_thread = stride<R> / threads * static_cast<int>(sizeof(R));
+    static constexpr int bytes_of_thread = stride<R> / threads* static_cast<int>(sizeof(R));
 
     static MYRIAD_FUNCTION bool is_own(int part) {
         return units % threads == 0 || part * threads + together::number_of_thread() < units;
@@ -147,7 +145,7 @@ struct part_of_units {
     /// Copies the parameters of an instance there. The right-hand side waits for it.
     template <class Arguments>
     static MYRIAD_FUNCTION void load_parameters(const Arguments& args, std::int64_t instance) {
-        if constexpr (n_parameter<Whole> > 0) {
+        if constexpr (n_parameter < Whole >> 0) {
             using R = std::remove_cvref_t<decltype(args.relative_tolerance[0])>;
             together::synchronise();  // all have done with those of the last instance
             R* const to = memory<R>() + layout::parameter;
@@ -176,7 +174,7 @@ struct part_of_units {
         const auto states_of = [&](int part) MYRIAD_LAMBDA {
             return own_states<Whole, R>(of_team, unit_of(part), y.values + part * states_of_unit);
         };
-        if constexpr (n_publication<unit_type> > 0) {
+        if constexpr (n_publication < unit_type >> 0) {
             MYRIAD_UNROLL
             for (int part = 0; part < parts; ++part) {
                 const int unit = unit_of(part);
@@ -188,7 +186,7 @@ struct part_of_units {
             }
             together::synchronise();
         }
-        if constexpr (n_coupling<unit_type> > 0) {
+        if constexpr (n_coupling < unit_type >> 0) {
             static_for<0, n_coupling<unit_type>>([&](auto k) MYRIAD_LAMBDA {
                 constexpr int number = decltype(k)::value;
                 const R* const matrix =
@@ -212,54 +210,6 @@ struct part_of_units {
         }
         return slopes;
     }
-
 };
-
-/// Whether it is `coupled_units` itself, all of whose functions are those of its units.
-template <class Model>
-inline constexpr bool is_of_units = false;
-template <class Unit, int units>
-inline constexpr bool is_of_units<coupled_units<Unit, units>> = true;
-
-/// Whether a team can integrate a model by a method. Others are integrated by one thread per instance.
-template <class Model, class Method>
-constexpr bool runs_in_teams() {
-    if constexpr (is_of_units<Model>) {
-        using unit = typename Model::unit_type;
-        return !rosenbrock_method<Method> && !samples_trajectory<Method> && !averages_errors<Method> &&
-               !has_events<Model> && !has_initialise<Model> && !has_after_step<Model> && !has_finalise<Model> &&
-               !has_stops<Model> && !has_observe<Model> && !writes_time_domain<unit> && !writes_parameters<unit> &&
-               (accessories_are_outputs<unit> || n_accessory<Model> + n_integer_accessory<Model> == 0);
-    } else {
-        return false;
-    }
-}
-
-/// The number of threads that integrate an instance, as units declare it, `static constexpr int threads_per_instance =
-/// 16;`, or by the number of states.
-template <class Model, class Method, class R>
-constexpr int threads_per_instance() {
-    if constexpr (!runs_in_teams<Model, Method>()) {
-        return 1;
-    } else if constexpr (requires { Model::threads_per_instance; }) {
-        constexpr int threads = Model::threads_per_instance;
-        static_assert(threads > 0 && 32 % threads == 0,
-                      "threads_per_instance does not divide a warp: it is 1, 2, 4, 8, 16 or 32");
-        return threads;
-    } else {
-        // What registers hold of an instance's stages.
-        constexpr int most_of_one_thread = 128 / static_cast<int>(sizeof(R)), most_of_16_threads = 64;
-        return n_state<Model> <= most_of_one_thread ? 1 : n_state<Model> <= most_of_16_threads ? 16 : 32;
-    }
-}
-
-/// What a thread integrates: the whole model or a part of it.
-template <class Model, class Method, class R>
-struct thread_model {
-    static constexpr int threads = threads_per_instance<Model, Method, R>();
-    using type = std::conditional_t<(threads > 1), part_of_units<Model, threads>, Model>;
-};
-template <class Model, class Method, class R>
-using model_of_thread = typename thread_model<Model, Method, R>::type;
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET
