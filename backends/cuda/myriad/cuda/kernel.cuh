@@ -177,6 +177,7 @@ inline constexpr int bytes_of_block = find_bytes_of_block<Model, R>();
 template <class Model, class Method, class R>
 constexpr int find_bytes_of_thread() {
     if constexpr (team_size < Model >> 1) {
+        static_assert(shared_step_bytes<Method, Model, R> == 0, "a team has the shared memory for itself");
         return Model::template bytes_of_thread<R>;
     } else {
         return shared_step_bytes<Method, Model, R>;
