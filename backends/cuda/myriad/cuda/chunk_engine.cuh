@@ -254,7 +254,8 @@ public:
         int multiprocessors = 0;
         MYRIAD_CUDA(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device_));
         const kernel_facts all = facts();
-        return std::int64_t{multiprocessors} * all.blocks_per_multiprocessor * all.block_size;
+        return std::int64_t{multiprocessors} * all.blocks_per_multiprocessor * all.block_size /
+               all.threads_per_instance;
     }
     void rest() override {
         const current_device here(device_);
