@@ -50,7 +50,8 @@ struct integrator {
                 if (any(s.ended)) continue;  // by an action before the first step
             }
             if constexpr (runs_freely<Model, Method>) free_run<Model, Method, S>{args, s}.take_steps(source);
-            trial_type trial;
+            trial_storage<Method, Model, S> storage;
+            trial_type& trial = storage.trial();
             propose_step(events);
             take_step(trial);
             detection_type detected;

@@ -188,8 +188,9 @@ MYRIAD_FUNCTION void see_stage_before(vec<vec<S, n>, Method::stages>& k) {
 
 /// Steps from (t, y) over h to t1; `trial.k[0]`, the slope at the start, is given. A last stage that is the first of
 /// the next step is evaluated at t1, which may differ from t + h by rounding. The new state is summed stage by stage,
-/// so that slopes no later stage needs free their registers.
-template <class Method, class Model, class S>
+/// so that slopes no later stage needs free their registers. Where the trial step lies `in_memory`, nvcc must not carry
+/// slopes to later stages in registers, which it would spill.
+template <class Method, class Model, bool in_memory = false, class S>
 MYRIAD_FUNCTION void explicit_rk_step(const S& t, const S& h, const S& t1, const vec<S, n_state<Model>>& y,
                                       const inputs<Model, S>& p, trial_step<Method, S, n_state<Model>>& trial) {
     using R = real_of<S>;
@@ -219,6 +220,7 @@ MYRIAD_FUNCTION void explicit_rk_step(const S& t, const S& h, const S& t1, const
                 detail::evaluate_rhs<Model>(fma(S(detail::node_operand<Method, stage, R>()), h, t), argument, p);
         }
         detail::see_stage_before<Method, stage>(trial.k);
+        if constexpr (in_memory) MYRIAD_MEMORY_BARRIER;
         if constexpr (!Method::first_same_as_last) add_stage(i);
     });
     if constexpr (!Method::first_same_as_last) {
