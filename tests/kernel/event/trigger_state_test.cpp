@@ -175,7 +175,7 @@ TEST_CASE("what an action brings about comes before the next that is due, if its
     check.operator()<alone<cascade>>();
 }
 
-TEST_CASE("a function on its surface counts as positive there, and at the same instant as on the side to which it goes") {
+TEST_CASE("a function on its surface counts as positive, and at the same instant as on the side to which it goes") {
     struct expected {
         double x, rate, c;  // c is after the end where no action sets x
         int reached;

@@ -85,6 +85,7 @@ TEST_CASE("rounding of their times does not decide which of two actions comes fi
         CHECK(code_of(run<Method>({more, 2, less}, {.by_number = 1})) == 321);
         CHECK(code_of(run<Method>({less, more, 2}, {.by_number = 1})) == 321);
         CHECK(code_of(run<Method>({2 - 1e-6, 2 + 1e-6, 2}, {.by_number = 1})) == 132);
+        CHECK(code_of(run<Method>({2, myriad::infinity_of<double>, 3})) == 13);  // never
     });
 }
 TEST_CASE("with a seed, actions that tie run in an order of the instance's own, the same in every run") {

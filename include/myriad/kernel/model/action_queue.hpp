@@ -51,7 +51,7 @@ struct action_queue {
         const Real same = max(Real(1e-10), Real(8) * epsilon_of<Real>) * abs(when);
         MYRIAD_UNROLL
         for (int i = 0; i < capacity; ++i)
-            if (lane.integer_accessory[first_integer + i] != 0 && abs(lane.accessory[first + i] - when) <= same)
+            if (lane.integer_accessory[first_integer + i] != 0 && abs(lane.accessory[first + i] - when) < same)
                 when = lane.accessory[first + i];
         MYRIAD_UNROLL
         for (int i = 0; i < capacity; ++i) {
