@@ -71,7 +71,7 @@ _largest = (1 << 31) - 1
 
 
 def whole(value: Any, name: str, largest: int = _largest, within: str = "") -> int:
-    """A whole number. One beyond `largest` is refused with the range of the option, `within`, where that is narrower."""
+    """A whole number. One beyond `largest` is refused with the range of its option, `within`, if that is narrower."""
     try:
         is_whole = not isinstance(value, (bool, np.bool_, str)) and float(value).is_integer()
     except (TypeError, ValueError, OverflowError):

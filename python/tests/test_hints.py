@@ -35,10 +35,11 @@ def test_methods_are_those_of_the_library():
 
 
 def test_one_method_is_the_default_of_python_and_of_study_files_and_pages_name_it():
-    of_files, = re.findall(r'std::string method = "(\w+)";', (ROOT / "src/program/study_file.hpp").read_text("utf-8"))
-    assert of_files == default
-    for page, said in (("docs/methods.md", f"take `{default}` where no method is named; in C++ the method is\nalways named"),
-                       ("docs/program.md", f"the method (`{default}`, "), ("python/README.md", f"The method is `{default}`")):
+    text = (ROOT / "src/program/study_file.hpp").read_text("utf-8")
+    assert re.findall(r'std::string method = "(\w+)";', text) == [default]
+    for page, said in (
+            ("docs/methods.md", f"take `{default}` where no method is named; in C++ the method is\nalways named"),
+            ("docs/program.md", f"the method (`{default}`, "), ("python/README.md", f"The method is `{default}`")):
         assert said in (ROOT / page).read_text("utf-8"), page
 
 
