@@ -137,7 +137,7 @@ struct integrator {
     }
 
     MYRIAD_FUNCTION void take_step(trial_type& trial) {
-        trial.k[0] = s.slopes.first_stage(s.now(), s.data);
+        detail::copy_components(trial.k[0], s.slopes.first_stage(s.now(), s.data));
         detail::take_trial_step<Method, Model>(s.now(), s.h, end_time(), s.data.y, s.data, trial);
     }
 
