@@ -59,7 +59,6 @@ PATH=$PWD/$environment/bin:$PATH quietly build/python-auditwheel.log \
 say "Built and installed $(basename "$wheels"/*.whl) in $(duration $((SECONDS - started)))"
 "$environment/bin/ruff" check python
 "$environment/bin/mypy" --no-error-summary -p myriad
-"$environment/bin/mypy" --no-error-summary python/examples/*.py
-for program in python/examples/case_studies/*.py; do "$environment/bin/mypy" --no-error-summary "$program"; done
+"$environment/bin/mypy" --no-error-summary python/examples/*.py python/examples/case_studies/*.py
 MYRIAD_TEST_WHEEL=$(realpath "$wheels"/*.whl) \
     "$environment/bin/python" -m pytest -q --numprocesses "$(nproc)" --dist loadfile "$@" python/tests

@@ -6,6 +6,9 @@ FOLDER has a folder for each case, as cases/semantic of https://github.com/sbmlt
 settings of its simulation and the values expected. A case is "right" where all values are within the tolerances of its
 settings, "refused" where read_sbml says that it does not support something, "wrong" where a value is not within them,
 and "failed" where something else goes wrong. The exit status is 1 if a case is wrong or failed.
+
+For a GPU the processes compile the models, and as many threads of one process integrate them: what several processes
+run on a GPU takes turns there, each with one instance, and what one process runs does not.
 """
 
 import argparse
@@ -13,6 +16,8 @@ import collections
 import concurrent.futures
 import contextlib
 import csv
+import math
+import multiprocessing
 import os
 import re
 import sys
@@ -22,7 +27,10 @@ from pathlib import Path
 import numpy as np
 
 import myriad as my
+from myriad import kinds, nvrtc
 from myriad.errors import CannotInterpret
+from myriad.methods import method_type
+from myriad.per_phase import prepared
 from myriad.sbml_math import Refused
 
 outcomes = ("right", "refused", "wrong", "failed")
@@ -135,13 +143,53 @@ def without_libsbmls_messages():
 
 def check(folder, options):
     """[(name of the file, outcome, why, seconds)] of a case."""
+    def clock():  # seconds of a core, those of a compiler too
+        return time.thread_time() if options.on_gpu else sum(os.times()[:4])
+
     found = []
+    for file in models_of(folder, options.all_levels):
+        begin = clock()
+        late = time.time() > options.latest
+        outcome, why = ("failed", "not begun in time") if late else outcome_of(folder, file, options)
+        found.append((file.name, outcome, why, clock() - begin))
+    return found
+
+
+def check_quietly(folder, options):
+    """The same in a process of its own."""
+    with without_libsbmls_messages():
+        return check(folder, options)
+
+
+def compile_for_gpu(folder, options):
+    """Compiles the models of a case into the cache, and returns the seconds of a core that it took. What fails does so
+    again where the case is checked."""
+    begin = time.process_time()
     with without_libsbmls_messages():
         for file in models_of(folder, options.all_levels):
-            begin = sum(os.times()[:4])  # of a core, those of a compiler too
-            outcome, why = outcome_of(folder, file, options)
-            found.append((file.name, outcome, why, sum(os.times()[:4]) - begin))
-    return found
+            if time.time() > options.latest:
+                break
+            with contextlib.suppress(my.Error):
+                model = prepared(my.read_sbml(file))
+                names = kinds.names_of(model)
+                nvrtc.prepare(*model.source(), method_type(options.method, (), True), "double",
+                              tuple(len(names[kind]) for kind in kinds.shared),
+                              int(options.device.partition(":")[2] or 0))
+    return time.process_time() - begin
+
+
+def check_on_gpu(folders, options):
+    """What `check` finds of all cases: each is integrated as soon as it is compiled."""
+    spawned = multiprocessing.get_context("spawn")  # a forked process cannot use the GPU
+    with (without_libsbmls_messages(), concurrent.futures.ProcessPoolExecutor(options.processes, spawned) as compilers,
+          concurrent.futures.ThreadPoolExecutor(options.processes) as threads):
+        compiled = [compilers.submit(compile_for_gpu, folder, options) for folder in folders]
+
+        def check_compiled(folder, seconds):
+            took = seconds.result()
+            return [(*found, of_check + took) for *found, of_check in check(folder, options)]
+
+        return list(threads.map(check_compiled, folders, compiled))
 
 
 def table(rows):
@@ -165,8 +213,10 @@ def main():
     parser.add_argument("--without-tags", default="", help="leave out cases with one of these tags")
     parser.add_argument("--with-tags", default="", help="only cases with one of these tags")
     parser.add_argument("--time-limit", type=float, default=60.0, help="seconds for each model")
+    parser.add_argument("--within", type=float, default=math.inf, metavar="SECONDS", help="begin no model after that")
     parser.add_argument("--details", action="store_true", help="say why cases are not right")
     options = parser.parse_args()
+    options.on_gpu = options.device.startswith("cuda")
     folders = sorted(p for p in options.folder.iterdir() if p.is_dir() and any(p.glob("*-settings.txt")))
     if options.cases:
         folders = [p for p in folders if p.name in options.cases.split(",")]
@@ -177,12 +227,14 @@ def main():
     folders = folders[part - 1::parts]
     if not folders:
         parser.error(f"{options.folder} has no such cases")
-    begin = time.perf_counter()
-    if options.processes > 1:
+    begin, options.latest = time.perf_counter(), time.time() + options.within
+    if options.on_gpu:
+        found = check_on_gpu(folders, options)
+    elif options.processes > 1:
         with concurrent.futures.ProcessPoolExecutor(options.processes) as pool:
-            found = list(pool.map(check, folders, [options] * len(folders), chunksize=8))
+            found = list(pool.map(check_quietly, folders, [options] * len(folders), chunksize=8))
     else:
-        found = [check(folder, options) for folder in folders]
+        found = [check_quietly(folder, options) for folder in folders]
     seconds = time.perf_counter() - begin
     by_tag = collections.defaultdict(lambda: [0, 0, 0, 0, 0.0])
     for folder, files in zip(folders, found):

@@ -26,7 +26,8 @@ from myriad.sbml_document import read
 
 
 def swept(model):
-    """The constants that differ between instances: libRoadRunner knows them by the same ids."""
+    """The constants that differ between instances, which libRoadRunner knows by the same ids, the species, those that
+    are amounts, and those that rules set."""
     document, file = read(model)
     set_by_events = {file.getEvent(e).getEventAssignment(i).getVariable() for e in range(file.getNumEvents())
                      for i in range(file.getEvent(e).getNumEventAssignments())}
@@ -39,7 +40,7 @@ def swept(model):
     names = [file.getSpecies(i).getId() for i in range(file.getNumSpecies())]
     amounts = {file.getSpecies(i).getId() for i in range(file.getNumSpecies())
                if file.getSpecies(i).getHasOnlySubstanceUnits()}
-    return varied, names, amounts
+    return varied, names, amounts, {name for name in names if file.getAssignmentRuleByVariable(name)}
 
 
 def by_roadrunner(path, ensemble, start, names, amounts, end, tolerance, count, calls=1):
@@ -89,7 +90,7 @@ def measure(path, options):
     """The rows of one model."""
     end = dict(options.ends).get(path.stem, 100.0)
     model = my.read_sbml(path)
-    constants, names, amounts = swept(path)
+    constants, names, amounts, by_rule = swept(path)
     constants = {n: v for n, v in constants.items() if model.aliases.get(n, n) in model.parameters}
     random = np.random.default_rng(1)
     ensemble = {n: v * options.spread ** random.uniform(-0.5, 0.5, options.instances) for n, v in constants.items()}
@@ -119,7 +120,7 @@ def measure(path, options):
 
     has_peer = importlib.util.find_spec("roadrunner") is not None
     if has_peer:
-        start = {n: run[n][:compared, 0] for n in names}
+        start = {n: run[n][:compared, 0] for n in names if n not in by_rule}
         arguments = path, ensemble, start, names, amounts, end
         _, reference = by_roadrunner(*arguments, accurate, compared)
         seconds, theirs = by_roadrunner(*arguments, tolerance, compared, options.calls)

@@ -12,7 +12,7 @@ bad() {
     sed "$@" good.toml >bad.toml
     cmp -s good.toml bad.toml && fail "the edit $* changes nothing"
     expect 2 "$message" "$program" run bad.toml
-    [[ ! -e results/zarr.json ]] || fail "something was stored by $*"
+    [[ ! -e results ]] || fail "a study that was refused has left a folder: $*"
 }
 bad '^bad\.toml:17:1: options\.relative_tolerence: there is no such key: did you mean "relative_tolerance"\?$' \
     -e 's/relative_tolerance/relative_tolerence/'

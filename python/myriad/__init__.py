@@ -8,6 +8,7 @@ import sys as _sys
 
 from . import _core, cache as cache, numpy_functions as numpy_functions, plots as plots, reduce as reduce
 from .axes import *  # noqa: F403
+from .function import *  # noqa: F403
 from .cpp_model import CppModel as CppModel
 from .errors import Error as Error
 from .expression import *  # noqa: F403
@@ -38,7 +39,7 @@ _public = ["CppModel", "Damage", "Error", "EventChoice", "Interrupted", "Options
            "SampleChoice", "SbmlModel", "Study", "StudyResult", "XppModel", "cache", "controls", "methods",
            "open_study", "plots", "read_antimony", "read_sbml", "read_xpp", "reduce", "solve", "status_names", "study",
            "verify",
-           *(name for part in ("axes", "expression", "fit", "grid", "interpolate", "least_squares", "model",
+           *(name for part in ("axes", "function", "expression", "fit", "grid", "interpolate", "least_squares", "model",
                                "sensitivities", "symbols", "table", "tangents", "units")
              for name in _sys.modules[f"{__name__}.{part}"].__all__)]
 # What `from myriad import *` brings: nothing that has the name of a function of Python's, such as abs.

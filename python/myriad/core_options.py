@@ -84,7 +84,7 @@ def make_options(components: Components, size: int, given: Options) -> tuple[_co
         value = getattr(given, called)
         if row["type"] in ("whole number", "number"):
             if value is not None:  # which stands for the default
-                setattr(made, name, whole(value, called, _largest) if row["type"] == "whole number" else
+                setattr(made, name, _whole(value, called, row) if row["type"] == "whole number" else
                         _given(real(value, called), called))
         elif name in true_choices:
             other, = (c for c in row["choices"] if c != true_choices[name])
@@ -109,6 +109,12 @@ def _given(value: float, name: str) -> float:
     if math.isnan(value) and _fields[name].default is None:
         raise Error(f"{name} is nan: give a number, or leave it out")
     return value
+
+
+def _whole(value: Any, name: str, row: Mapping[str, Any]) -> int:
+    """A whole number for an option. One that the core cannot hold is refused with the range in its row."""
+    within = "" if row["range"].endswith("inf)") else row["range"]
+    return whole(value, name, _largest, within)
 
 
 def _choice(value: Any, name: str, choices: list[str]) -> str:
@@ -149,7 +155,7 @@ def _set_records(options: _core.Options, record: Any, components: Components) ->
         setattr(made, kinds.every[kind].plural, a + b)
         places.update((components.names[kind][c], (kind, c)) for c in a + b)
     made.time = bool(record.get("time", False))
-    made.from_phase = whole(record.get("from_phase", 0), "record from_phase")
+    made.from_phase = _whole(record.get("from_phase", 0), "record from_phase", _rows["record.from_phase"])
     if made.time:
         of_time = itertools.chain(("t", "time"), (f"time_{i}" for i in itertools.count(1)))
         places[next(n for n in of_time if n not in components.place)] = ("time", 0)
@@ -166,7 +172,7 @@ def _set_samples(options: _core.Options, samples: Any, components: Components, s
     made = options.samples
     made.states, = components.numbers(samples.get("states", components.states), "samples=", ("state",))
     for name in ("evenly", "every", "from_phase"):
-        setattr(made, name, whole(samples.get(name, 0), f"samples {name}"))
+        setattr(made, name, _whole(samples.get(name, 0), f"samples {name}", _rows[f"samples.{name}"]))
     made.minimum_spacing = real(samples.get("minimum_spacing", 0), "samples minimum_spacing")
     refuse_masked(samples.get("times"), "samples times")
     try:
@@ -188,7 +194,7 @@ def _set_samples(options: _core.Options, samples: Any, components: Components, s
         sampled = max(options.phases - made.from_phase, 1)
         given = times.shape[-1] * (1 if options.phase_length else sampled)
         capacity = made.evenly * sampled if made.evenly else given
-    made.capacity = whole(capacity, "samples capacity")
+    made.capacity = _whole(capacity, "samples capacity", _rows["samples.capacity"])
     if times.ndim == 2:
         made.times_of_instances = times.ravel().tolist()
     else:
@@ -214,6 +220,6 @@ def _set_events(options: _core.Options, events: Any, components: Components, cou
         tolerance = of_call.get("tolerance", event.tolerance)
         if tolerance is not None:
             one.tolerance = real(tolerance, "tolerance")
-        one.stop_after = whole(of_call.get("stop_after", event.stop_after), "stop_after")
+        one.stop_after = _whole(of_call.get("stop_after", event.stop_after), "stop_after", _rows["events.stop_after"])
         made.append(one)
     options.events = made + [_core.EventOptions() for _ in range(len(components.events), count)]

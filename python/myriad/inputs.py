@@ -70,7 +70,8 @@ def whole_numbers(array: Array, name: str) -> Array:
 _largest = (1 << 31) - 1
 
 
-def whole(value: Any, name: str, largest: int = _largest) -> int:
+def whole(value: Any, name: str, largest: int = _largest, within: str = "") -> int:
+    """A whole number. One beyond `largest` is refused with the range of its option, `within`, if that is narrower."""
     try:
         is_whole = not isinstance(value, (bool, np.bool_, str)) and float(value).is_integer()
     except (TypeError, ValueError, OverflowError):
@@ -78,7 +79,7 @@ def whole(value: Any, name: str, largest: int = _largest) -> int:
     if not is_whole:
         raise Error(f"{name} is {value!r}: give a whole number")
     if not -largest <= value <= largest:
-        raise Error(f"{name} is {value}: give a number up to {largest}")
+        raise Error(f"{name} is {value}: give a number {'in ' + within if within else f'up to {largest}'}")
     return int(value)
 
 

@@ -253,7 +253,9 @@ class Model(kinds.ComponentNames):
         elif callable(equations) and not isinstance(equations, dict):
             equations = self._call(equations, states)
         if not isinstance(equations, dict) or not equations:
-            raise Error(f"the equations of a model are {type(equations).__name__}{at(self.line)}: give a dictionary "
+            what = ("a model has no equation" if isinstance(equations, dict) else
+                    f"the equations of a model are {type(equations).__name__}")
+            raise Error(f"{what}{at(self.line)}: give a dictionary "
                         "{state: derivative}, a function f(t, y, ...) or a string \"x' = v; v' = -x\"")
         equations = spread(equations, "equations", self.line)
         targets, rhs = [], []

@@ -177,6 +177,14 @@ def source_of(header: str, struct: str, method: str, real: str, place: str, gene
     return program
 
 
+def _program(header: str, struct: str, method: str, real: str, shared: tuple[int, ...], device: int,
+             generates: bool) -> tuple[str, int]:
+    """The file that is compiled for a GPU by its number, and the compute capability of that."""
+    _, capability, shared_bytes = _core.gpu(device)
+    place = placement(shared[0] * (8 if real == "double" else 4) + shared[1] * 4, shared_bytes)
+    return source_of(header, struct, method, real, place, generates), capability
+
+
 _loaded: dict[Any, _core.Library] = {}
 
 
@@ -204,9 +212,7 @@ def kernel(header: str, struct: str, method: str, real: str, shared: tuple[int, 
     the model sets the instances of studies; `use` is called with a library that was loaded. Raises `Error` if there is
     no NVRTC, or with its first message if it refuses the model."""
     begin = time.perf_counter()
-    _, capability, shared_bytes = _core.gpu(device)
-    place = placement(shared[0] * (8 if real == "double" else 4) + shared[1] * 4, shared_bytes)
-    source = source_of(header, struct, method, real, place, generates)
+    source, capability = _program(header, struct, method, real, shared, device, generates)
     asked = (source, capability, os.environ.get("MYRIAD_NVRTC"))
     if asked in _loaded:
         return Kernel(_loaded[asked], "memory", time.perf_counter() - begin)
@@ -215,6 +221,12 @@ def kernel(header: str, struct: str, method: str, real: str, shared: tuple[int, 
         use(obtained.loaded)
     _loaded[asked] = obtained.loaded
     return kernel_of(obtained, "" if obtained.hit else f"NVRTC {library().version}", begin)
+
+
+def prepare(header: str, struct: str, method: str, real: str, shared: tuple[int, ...], device: int,
+            generates: bool = False) -> None:
+    """Compiles the same kernel into the cache, and loads nothing: for processes that do not use the GPU themselves."""
+    _cached(*_program(header, struct, method, real, shared, device, generates), lambda program: True)
 
 
 @functools.cache

@@ -45,16 +45,18 @@ _reverse = {"less": "greater_equal", "less_equal": "greater", "greater": "less_e
 
 
 def comparisons_alone(condition: Any, where: str, is_still: Callable[[Any], bool], as_it_is: bool = True) -> Any:
-    """A condition of comparisons, `and` and `or`, without `not`. Comparisons by == and != have no function that rises
-    through zero: only those are taken that change at events alone, as `is_still` tells."""
+    """A condition of comparisons, `and` and `or`, without `not`. One by == of what `is_still` tells to change at other
+    times than events too holds for an instant; one by != fails for an instant, and is refused."""
     if condition.op == "not":
         return comparisons_alone(condition.args[0], where, is_still, not as_it_is)
     if condition.op in ("and", "or"):
         parts = [comparisons_alone(a, where, is_still, as_it_is) for a in condition.args]
         return both(*parts) if (condition.op == "and") is as_it_is else either(*parts)
-    if condition.op in _reverse and (condition.op not in ("equal", "not_equal") or is_still(condition)):
-        return condition if as_it_is else compare(_reverse[condition.op], *condition.args)
-    raise Refused(f"{where}: its trigger is no combination of <, <=, > and >=")
+    if condition.op in _reverse:
+        wanted = condition if as_it_is else compare(_reverse[condition.op], *condition.args)
+        if wanted.op != "not_equal" or is_still(wanted):
+            return wanted
+    raise Refused(f"{where}: its trigger is no combination of ==, <, <=, > and >=")
 
 
 def comparisons_of(condition: Any) -> list[Any]:
@@ -79,6 +81,14 @@ def function_of(condition: Any) -> Any:
         return ex.make("min" if condition.op == "and" else "max", tuple(function_of(a) for a in condition.args))
     a, b = condition.args if condition.op.startswith("greater") else condition.args[::-1]
     return subtract(a, b)
+
+
+def functions_of(condition: Any, is_still: Callable[[Any], bool]) -> list[Any]:
+    """The functions that rise through zero where a comparison begins to hold."""
+    if condition.op == "equal" and not is_still(condition):
+        a, b = condition.args
+        return [subtract(a, b), subtract(b, a)]
+    return [function_of(condition)]
 
 
 def never(condition: Any) -> bool:

@@ -19,7 +19,8 @@ from .expression import symbols_of
 from .folding import (add, both, choose, compare, constant, divide, either, is_constant, multiply, number, opposite,
                       subtract, truth, value_of)
 from .model import Event, event
-from .sbml_conditions import any_of, comparisons_alone, comparisons_of, false, function_of, never, true, with_values
+from .sbml_conditions import (any_of, comparisons_alone, comparisons_of, false, function_of, functions_of, never, true,
+                              with_values)
 from .sbml_document import named
 from .sbml_instant import (Instant, Occurrence, Pending, Slot, at_once, interfere, margin, mark, never_due,
                            next_random)
@@ -58,9 +59,9 @@ class Events:
         groups: dict[Any, list[tuple[Occurrence, Any]]] = {}
         for one in self.all:
             for comparison in comparisons_of(one.trigger):
-                function = function_of(comparison)
-                if not self.is_still(function):
-                    groups.setdefault(function, []).append((one, comparison))
+                for function in functions_of(comparison, self.is_still):
+                    if not self.is_still(function):
+                        groups.setdefault(function, []).append((one, comparison))
         for function, group in groups.items():
             self._trigger(function, group)
         if any(one.slots for one in self.all):
@@ -142,6 +143,9 @@ class Events:
         self.semantics.names[f"event {index}"] = name
         if condition.op != "truth":
             condition = comparisons_alone(condition, where, self.is_still)
+        if delay is not None and not persistent and any(c.op == "equal" and not self.is_still(c)
+                                                        for c in comparisons_of(condition)):
+            raise Refused(f"{where} waits, and its trigger by == ceases to hold at once: make it persistent")
         made = Occurrence(name, where, condition, starts, persistent, given, from_trigger, delay, priority)
         stored = self._stores(made, given)
         made.inputs = set(symbols_of([condition]))

@@ -29,17 +29,18 @@ __all__ = ["with_sensitivities", "WithSensitivities", "Sensitivities"]
 _not_controlled = 1e30  # a tolerance that no error exceeds
 
 
-def with_sensitivities(model: AnyModel, by: SomeComponents) -> WithSensitivities:
+def with_sensitivities(model: AnyModel, by: SomeComponents, control: bool = True) -> WithSensitivities:
     """The model with the derivatives of its solution by some of its components: initial states, parameters and shared
-    values. `solve(model, ..., sensitivities=[k, x])` makes one."""
-    return WithSensitivities(model, by)
+    values, whose errors take part in choosing the steps unless `control` is False. `solve(model, ...,
+    sensitivities=[k, x])` makes one."""
+    return WithSensitivities(model, by, control)
 
 
 class WithSensitivities(Extended):
     """A model with sensitivities. The derivative of state or accessory c by component k is the state or accessory
     `<c>_by_<k>`, that of the time at which the last phase ended the accessory `time_by_<k>`."""
 
-    def __init__(self, model: AnyModel, by: SomeComponents) -> None:
+    def __init__(self, model: AnyModel, by: SomeComponents, control: bool = True) -> None:
         line = at(users_line())
         own = Components(model)
         if isinstance(model, Extended):
@@ -67,6 +68,7 @@ class WithSensitivities(Extended):
             raise Error(f"the model has a mass matrix{line}, which sensitivities do not take: solve its algebraic "
                         "equations in the other states")
         self.by = names
+        self.control = control  #: whether errors of derivatives take part in choosing the steps
         self.n_original = len(own.states)
         self.places = [own.place[name] for name in names]
         accessories = [f"{a}_by_{k}" for k in names for a in own.names["accessory"]]
@@ -79,9 +81,9 @@ class WithSensitivities(Extended):
         """The text that kernels are compiled from, and the name of its struct."""
         text, struct = self.model.source()
         wrt = ", ".join(f"static_cast<{self._enumeration(kind, struct)}>({number})" for kind, number in self.places)
+        template = "with_sensitivities" if self.control else "uncontrolled_sensitivities"
         return (f"{text}\n#include <myriad/sensitivity.hpp>\n"
-                f"using {struct}_sensitivities = myriad::with_sensitivities<{struct}, {wrt}>;\n"), (
-                    f"{struct}_sensitivities")
+                f"using {struct}_sensitivities = myriad::{template}<{struct}, {wrt}>;\n"), f"{struct}_sensitivities"
 
     @staticmethod
     def _enumeration(kind: str, struct: str) -> str:
@@ -99,7 +101,7 @@ class WithSensitivities(Extended):
         have = [n for n in names if components.place.get(n, ("",))[0] in ("state", "accessory")]
         return [*listed, *(f"{n}_by_{k}" for k in self.by for n in have if f"{n}_by_{k}" in components.place)]
 
-    def options(self, given: Options, components: Components, control: bool) -> Options:
+    def options(self, given: Options, components: Components) -> Options:
         """The options of a call of the model alone as those of the model with sensitivities: their records, samples and
         tolerances."""
         record, samples = given.record, given.samples
@@ -111,11 +113,11 @@ class WithSensitivities(Extended):
             record = chosen
         if isinstance(samples, Mapping) and "states" in samples:
             samples = {**samples, "states": self._derivatives_of(samples["states"], components)}
-        rtol = self._tolerances(given.rtol, components, "rtol", control)
-        atol = self._tolerances(given.atol, components, "atol", control)
+        rtol = self._tolerances(given.rtol, components, "rtol")
+        atol = self._tolerances(given.atol, components, "atol")
         return dataclasses.replace(given, record=record, samples=samples, rtol=rtol, atol=atol)
 
-    def _tolerances(self, value: Any, components: Components, name: str, control: bool) -> list[float]:
+    def _tolerances(self, value: Any, components: Components, name: str) -> list[float]:
         """Those of the model's states, and of their derivatives the same, or those that a dict names."""
         named = by_component(value, name) if hasattr(value, "items") else {}
         derivatives_of = components.states[self.n_original:]
@@ -125,7 +127,7 @@ class WithSensitivities(Extended):
             of_states = of_states * self.n_original
         of_derivatives = dict(zip(derivatives_of, of_states * len(self.by)))
         of_derivatives.update((c, real(t, f"{name} of '{c}'")) for c, t in named.items() if c in of_derivatives)
-        return [*of_states, *(t if control else _not_controlled for t in of_derivatives.values())]
+        return [*of_states, *(t if self.control else _not_controlled for t in of_derivatives.values())]
 
     def check_start(self, components: Components, given: Collection[str]) -> None:
         """Refuses initial values that follow from components that there are derivatives by."""

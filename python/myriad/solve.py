@@ -24,7 +24,7 @@ from .options import Options, SolveArguments
 from .per_phase import prepared
 from .progress import ProgressDisplay
 from .run import Interrupted, Run
-from .sensitivities import WithSensitivities, note
+from .sensitivities import WithSensitivities, note, with_sensitivities
 from .statements import with_event_names
 
 if TYPE_CHECKING:
@@ -270,12 +270,14 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
         raise Error(f"the model is a {type(model).__name__}: make it by myriad.model(...), as in "
                     "myriad.solve(myriad.model({x: v, v: -x}), ...)")
     chosen = default if method is None else method
-    model = prepared(model) if sensitivities is None else WithSensitivities(model, sensitivities)
+    if isinstance(model, WithSensitivities) and sensitivities is None and not sensitivity_control:
+        model = with_sensitivities(model.model, model.by, control=False)
+    model = prepared(model) if sensitivities is None else with_sensitivities(model, sensitivities, sensitivity_control)
     components = Components(model)
     given, domain, count = _gather(components, sweep, start, time, size)
     if isinstance(model, WithSensitivities):
         model.check_start(components, _names_given(components, sweep, start))
-        given_options = model.options(given_options, components, sensitivity_control)
+        given_options = model.options(given_options, components)
     samples = given_options.samples is not None
     method_type(chosen, control, samples)  # refuses what does not exist
     if chosen in fixed_step and given_options.step is None:

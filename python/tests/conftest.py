@@ -7,8 +7,10 @@ import tempfile
 
 import pytest
 
-_cache = tempfile.TemporaryDirectory(prefix="myriad-tests-")
-os.environ["MYRIAD_CACHE_DIR"] = _cache.name  # before the package is imported, and for the processes that tests start
+if "PYTEST_XDIST_WORKER" not in os.environ:  # whose processes share the cache of the one that starts them
+    _cache = tempfile.TemporaryDirectory(prefix="myriad-tests-")
+    # before the package is imported, and for the processes that tests start
+    os.environ["MYRIAD_CACHE_DIR"] = _cache.name
 if os.environ.get("MYRIAD_TEST_DEVICE") != "cuda":  # as in the tests of the C++ library
     os.environ["CUDA_VISIBLE_DEVICES"] = "-1"
 

@@ -335,6 +335,23 @@ cases = [
     Case("a trigger of one condition or another", [
         variable("x", 1), variable("n", 0), rate("x", "1"), event("x > 1.55 || time > 0.25", {"n": "n + 1"})],
         {"n": lambda t: _step(t, 0.25, 0.0, 1.0)}),
+    Case("a trigger of equality holds at the time", [variable("x", 1), event("time == 0.65", {"x": "5"})],
+         {"x": lambda t: _step(t, 0.65, 1.0, 5.0)}),
+    Case("a trigger of equality holds at every crossing, whatever its direction", [
+        variable("x", 0), variable("n", 0), rate("x", "cos(4 * time)"), event("x == 0.11", {"n": "n + 1"})],
+        {"n": lambda t: sum(np.where(t >= at, 1.0, 0.0) for at in (np.arcsin(0.44) + np.array(
+            [0, np.pi - 2 * np.arcsin(0.44), 2 * np.pi])) / 4)}),
+    Case("a trigger of equality and another condition", [
+        variable("x", 0), variable("n", 0), rate("x", "cos(4 * time)"),
+        event("!(x != 0.11) && time > 0.2", {"n": "n + 1"})],
+        {"n": lambda t: sum(np.where(t >= at, 1.0, 0.0) for at in (np.pi - np.arcsin(0.44), 2 * np.pi + np.arcsin(
+            0.44)) / np.array([4.0, 4.0]))}),
+    Case("a trigger of equality that another event brings about, and that moves off without a crossing", [
+        variable("x", 0), variable("n", 0), rate("x", "1"), event("time > 0.65", {"x": "2"}),
+        event("x == 2", {"n": "n + 1"})], {"n": lambda t: _step(t, 0.65, 0.0, 1.0)}, end=1.9),
+    Case("a trigger of equality that waits", [
+        variable("x", 0), variable("y", 0), rate("x", "1"), event("x == 0.65", {"y": "x"}, delay="0.5")],
+        {"y": lambda t: _step(t, 1.15, 0.0, 0.65)}),
     Case("an event with a delay", [variable("x", 1), event("time >= 0.65", {"x": "5"}, delay="0.5")],
          {"x": lambda t: _step(t, 1.15, 1.0, 5.0)}),
     Case("an event with a delay has values from its trigger", [
@@ -441,8 +458,9 @@ refused = [
     ([variable("x", 1), Part("Rules", element("algebraicRule", math("x - time")))], "algebraicRule"),
     ([variable("x", 1), variable("y"), always("y", "delay(x, 1)")], "a delay, in assignmentRule 'y' (line "),
     ([variable("x", 1), event("time > 1", {"x": "2"}, delay="-0.5", id="earlier")], "event 'earlier' (line "),
-    ([variable("x", 1), event("time == 1", {"x": "2"}, id="once")], "event 'once' (line "),
-    ([variable("x", 1), event("x == 2", {"x": "3"}, id="once"), rate("x", "1")], "event 'once' (line "),
+    ([variable("x", 1), event("time != 1", {"x": "2"}, id="once")], "event 'once' (line "),
+    ([variable("x", 1), event("x == 2", {"x": "3"}, id="once", persistent=False, delay="1"), rate("x", "1")],
+     "event 'once' (line "),
     ([variable(f"x{i}", 1) for i in range(20)] + [
         event(f"time > 1 && x{(i + 1) % 20} < 2", {f"x{i}": "3"}, priority="x0", persistent=False) for i in range(20)],
      "up to 16 can be"),

@@ -55,7 +55,9 @@ CALL = dict(sweep={"w": [1.0, 2.0]}, start={"x": 1, "v": 0}, time=(0, 1))
     (dict(precision="half"), "give \"double\" or \"float\""),
     (dict(size=3), "'w' has 2 values and 'size' has 3"),
     (dict(size=2**63), "size is 9223372036854775808: give a number up to"),
-    (dict(phases=10**30), "phases is 10+: give a number up to"),
+    (dict(phases=10**30), r"phases is 10+: give a number in \[1, 1000000000\]"),
+    (dict(max_steps=2**63), r"max_steps is 9223372036854775808: give a number in 0 or \[1, 2000000000\]"),
+    (dict(max_steps=2**40), r"max_steps is 1099511627776 .must be from 1 to 2000000000"),
     (dict(phases="two"), "phases is 'two': give a whole number"),
     (dict(step="short"), "step is 'short': give a number"),
     (dict(start=[1, 0]), r"start is \[1, 0\]: give a dict by name"),
@@ -66,7 +68,8 @@ CALL = dict(sweep={"w": [1.0, 2.0]}, start={"x": 1, "v": 0}, time=(0, 1))
     (dict(time=(0, np.nan)), "t_end is NaN in all 2 instances.*; give it in time="),
     (dict(samples=0), "samples= asks for no samples"),
     (dict(samples=[]), "samples= asks for no samples"),
-    (dict(samples=10**10), "samples evenly is 10000000000: give a number up to"),
+    (dict(samples=10**10), "samples capacity is 10000000000 .must be from 1 to 2000000000"),
+    (dict(samples=2**63), r"samples evenly is 9223372036854775808: give a number in 0 or \[2, 2000000000\]"),
     (dict(device="cpu:9999"), 'device "cpu:9999" has 9999 threads .must be from 1 to 4096'),
 ])
 def test_message(oscillator, change, message):

@@ -11,6 +11,7 @@ import pytest
 
 import myriad
 from myriad import _core
+from myriad.methods import default
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 FOLDER = pathlib.Path(myriad.__file__).parent
@@ -31,6 +32,15 @@ def test_the_stub_of_the_compiled_module_has_all_of_it():
 
 def test_methods_are_those_of_the_library():
     assert list(myriad.methods) == _core.methods
+
+
+def test_one_method_is_the_default_of_python_and_of_study_files_and_pages_name_it():
+    text = (ROOT / "src/program/study_file.hpp").read_text("utf-8")
+    assert re.findall(r'std::string method = "(\w+)";', text) == [default]
+    for page, said in (
+            ("docs/methods.md", f"take `{default}` where no method is named; in C++ the method is\nalways named"),
+            ("docs/program.md", f"the method (`{default}`, "), ("python/README.md", f"The method is `{default}`")):
+        assert said in (ROOT / page).read_text("utf-8"), page
 
 
 def checked(source):

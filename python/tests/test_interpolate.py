@@ -48,21 +48,24 @@ def test_numbers_are_scipys(kind, outside, even, n):
     np.testing.assert_allclose(model.derivatives(x, [0.0])[0], expected, atol=1e-9 * np.abs(expected).max(), rtol=1e-9)
 
 
-@pytest.mark.parametrize("kind", ["linear", "cubic"])
 @pytest.mark.parametrize("interpreted", [True, False])
-def test_kernels_have_the_same_numbers(kind, interpreted):
-    """y = f at the begin, which a step of length 1e-9 does not change, for even and other times."""
-    a, b, begin = my.states("a b")[0], my.states("a b")[1], my.parameter("begin")
+def test_kernels_have_the_same_numbers(interpreted):
+    """y = f at the begin, which a step of length 1e-6 does not change, for even and other times."""
+    begin = my.parameter("begin")
     of_even, of_other = data(True, False, 60), data(False, True, 60)
-    rhs = {a: my.interpolate(my.time, *of_even, kind, "hold", name="even"),
-           b: my.interpolate(my.time + 0 * begin, *of_other, kind, "periodic", name="other")}
+    rhs, expected = {}, {}
+    for kind in ("linear", "cubic"):
+        even, other = my.states(f"{kind}_even {kind}_other")
+        rhs[even] = my.interpolate(my.time, *of_even, kind, "hold", name=f"even_{kind}")
+        rhs[other] = my.interpolate(my.time + 0 * begin, *of_other, kind, "periodic", name=f"other_{kind}")
+        expected |= {even: reference(*of_even, kind, "hold"), other: reference(*of_other, kind, "periodic")}
     x = numbers.uniform(-2, 4, 101)
-    run = my.solve(my.model(rhs), {"begin": x}, start={a: 0, b: 0}, time=(x, x + 1e-6), method="runge_kutta_4",
-                   step=1e-6, interpreted=interpreted)
+    run = my.solve(my.model(rhs), {"begin": x}, start=dict.fromkeys(rhs, 0), time=(x, x + 1e-6),
+                   method="runge_kutta_4", step=1e-6, interpreted=interpreted)
     length = (x + 1e-6) - x
     middle = x + 0.5e-6
-    for name, (points, outside) in {"a": (of_even, "hold"), "b": (of_other, "periodic")}.items():
-        np.testing.assert_allclose(run[name] / length, reference(*points, kind, outside)(middle), atol=1e-4)
+    for state, function in expected.items():
+        np.testing.assert_allclose(run[state] / length, function(middle), atol=1e-4)
 
 
 @pytest.mark.parametrize("change, message", [

@@ -291,6 +291,7 @@ def of_wrong_shape(t, y, A=np.ones((3, 3))):  # noqa: B008, a constant
     (lambda: my.model({x: 1}, events=[my.event(x, do={"x": 0, x: 1})]), "x is assigned twice in event event_1"),
     (lambda: my.model({x: 1}, accessories={a: 0}, initialise={a: 1}), "a is assigned twice in initialise"),
     (lambda: my.model({x: 1}, accessories={x: 0}), "x is no accessory but a state"),
+    (lambda: my.model({}), "a model has no equation .*: give a dictionary"),
     (lambda: my.model({x: 1}, accessories={n: 0.5}), "gives the whole number n the real value"),
     (lambda: my.model({x: 1}, accessories={n: my.integral(x)}), "make it by myriad.accessory"),
     (lambda: my.model({x: 1}, accessories={a: my.time_of_maximum(x)}), "add one with myriad.phase_maximum"),

@@ -20,3 +20,9 @@ def test_the_program_of_the_readme():
     np.testing.assert_allclose(last[5:], last[:-5], atol=1e-9)
     np.testing.assert_allclose(last[-1], -1.13703381912, atol=1e-7)  # with tolerances of 1e-13, by all methods
     assert abs(last[-1] - last[-2]) > 0.1
+
+
+def test_the_readme_says_how_long_an_installation_and_the_first_result_take():
+    readme = (pathlib.Path(__file__).resolve().parents[1] / "README.md").read_text(encoding="utf-8")
+    assert re.search(r"`pip install \.` compiles for [\w ]+ minutes", readme)
+    assert re.search(r"first result", readme)

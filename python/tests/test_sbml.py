@@ -176,6 +176,18 @@ def test_a_trigger_that_holds_right_after_the_start_happens_there():
     np.testing.assert_allclose(run["y"][:4], [2.5, 2, 1, 1])
 
 
+def test_a_rate_with_a_pole_keeps_a_species_on_its_side():
+    """As in BIOMD0000000111: its solution stays right before the pole, which a step with a large tolerance may
+    pass, in any program. Here x' = c / x - 1, which comes to rest at c."""
+    parts = [variable("x", 1), parameter("c", 1e-3), rate("x", "c / x - 1")]
+    run = my.solve(my.read_sbml(sbml_models.document(parts)), time=(0, 2), samples=21, rtol=1e-8, atol=1e-12,
+                   interpreted=True)
+    t, x = run.sample_times[0], run["x"][0]
+    before = t < 0.95
+    np.testing.assert_allclose(1 - x[before] + 1e-3 * np.log((1 - 1e-3) / (x[before] - 1e-3)), t[before], rtol=1e-7)
+    np.testing.assert_allclose(x[t > 1.05], 1e-3, rtol=1e-7)
+
+
 def test_a_sample_at_the_time_of_an_event_is_from_before_it():
     run = my.solve(my.read_sbml(sbml_models.document([variable("x", 1), event("time >= 1", {"x": "2"})])), time=(0, 2),
                    samples=[0.5, 1.0, 1.5], interpreted=True)

@@ -66,6 +66,17 @@ def run(tmp_path_factory):
     return lambda script, **variables: simulated_gpu.run(folder, MODEL + script, **variables)
 
 
+def test_a_kernel_that_is_prepared_is_not_compiled_again(run, tmp_path):
+    """As another process does for one that uses the GPU, and only loads."""
+    run("""
+from myriad import kinds, nvrtc
+from myriad.methods import default, method_type
+names = kinds.names_of(model)
+nvrtc.prepare(*model.source(), method_type(default), "double", tuple(len(names[kind]) for kind in kinds.shared), 0)
+assert solve("cuda", 3).report.kernel == "cache", solve("cuda", 3).report.kernel
+""", MYRIAD_CACHE_DIR=tmp_path)
+
+
 def test_results_are_the_cpus_in_every_schedule_and_place(run):
     run("""
 for size, more in ((3, {}), (100, dict(schedule="dynamic")), (1000, dict(phases=6)),

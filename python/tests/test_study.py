@@ -331,10 +331,13 @@ def test_a_store_of_another_study_is_refused(tmp_path):
     (dict(samples=np.zeros((2, 2))), "no sample times for each instance"),
     (dict(method="runge_kutta_4"), "give step="),
     (dict(draws=0), "draws= is given 0 values"),
+    (dict(rtol=-1), "rtol is -1"),
+    (dict(max_steps=2**40), "max_steps is 1099511627776"),
 ])
-def test_messages(change, message):
+def test_a_study_that_is_refused_leaves_no_folder(tmp_path, change, message):
     with pytest.raises(my.Error, match=message):
-        my.study(duffing(), **{"sweep": grid(), **call, **change}).run()
+        my.study(duffing(), **{"sweep": grid(), **call, **change}).run(tmp_path / "store")
+    assert not (tmp_path / "store").exists()
 
 
 def test_messages_of_axes():

@@ -462,8 +462,6 @@ int info(const std::string& folder, bool verify, bool as_json) {
     for (const auto& [name, count] : now.statuses) std::cout << message("  ", name, ": ", count, '\n');
     if (now.damaged > 0)
         tell(message("damaged: the records of ", now.damaged, " chunks, which are not counted: --verify says which"));
-    if (there.format() == 1)
-        std::cout << "format 1, of an earlier version: its metadata, coordinates and final results have no checksums\n";
     for (const std::string& device : there.devices()) std::cout << "device: " << device << '\n';
     for (const studies::arithmetic& a : there.arithmetics())
         std::cout << message("computed by: ", a.text(), ", on ", a.host, '\n');

@@ -268,10 +268,23 @@ void make_folder(file_system& files, const std::string& folder) {
     if (files.mkdir(folder) < 0 && errno != EEXIST) throw file_error("making the folder", folder, errno);
 }
 
+namespace {
+
+/// Refuses a link to nothing, of which the system says both that it exists and that it does not.
+void refuse_dangling_link(const std::string& folder) {
+    std::error_code unknown;
+    const std::filesystem::path target = std::filesystem::read_symlink(folder, unknown);
+    if (unknown || std::filesystem::status(folder, unknown).type() != std::filesystem::file_type::not_found) return;
+    host::refuse({host::named_option("store", "the folder"), " ", folder, " is a link to ", target.string(),
+                  ", which is not there", host::cure, "make that folder, or remove the link"});
+}
+
+}  // namespace
+
 void make_folders(file_system& files, const std::string& folder) {
     const std::string parent = folder_of(folder);
     if (files.mkdir(folder) < 0) {
-        if (errno == EEXIST) return;
+        if (errno == EEXIST) return refuse_dangling_link(folder);
         if (errno != ENOENT || parent == folder) throw file_error("making the folder", folder, errno);
         make_folders(files, parent);
         make_folder(files, folder);

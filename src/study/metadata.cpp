@@ -18,7 +18,7 @@ namespace {
 using json = ordered_json;
 
 constexpr std::int64_t coordinate_chunk = std::int64_t{1} << 20;  // 8 MB
-constexpr int store_format = 2;  // 1: without checksums of metadata, coordinates and final results
+constexpr int store_format = 2;
 
 json fill_value(element type) {
     return with_type(type, [type]<class T>(T value) -> json {
@@ -245,8 +245,8 @@ std::string array_json(const array_shape& shape, const std::vector<attribute>& a
 
 namespace {
 
-// Of a store of any format, as the version that made it wrote it.
-json group_of_format(const layout& content, int format, const std::string& version) {
+// As the given version of this library wrote it, without its checksum.
+json unsealed_group(const layout& content, const std::string& version) {
     json arrays = json::object(), variables = json::array(), coordinates = json::array();
     for (const coordinate& c : content.coordinates) {
         arrays[c.name] = array_metadata(shape_of(content, c), c.attributes);
@@ -261,14 +261,14 @@ json group_of_format(const layout& content, int format, const std::string& versi
                              {"role", name_in(v.role, role_names)},
                              {"attributes", as_json(v.attributes)}});
     }
-    json own = {{"format", format},
+    json own = {{"format", store_format},
                 {"version", version},
                 {"axes", as_json(content.axes)},
                 {"chunk", content.chunk},
                 {"variables", variables},
                 {"coordinates", coordinates},
                 {"description", json::parse(content.description)}};
-    if (format > 1) own[seal_key] = unsealed;
+    own[seal_key] = unsealed;
     // The checksum at the end, after all names that users give.
     return {{"zarr_format", 3},
             {"node_type", "group"},
@@ -278,9 +278,7 @@ json group_of_format(const layout& content, int format, const std::string& versi
 
 }  // namespace
 
-std::string group_json(const layout& content) {
-    return sealed(group_of_format(content, store_format, MYRIAD_VERSION).dump(1) + '\n');
-}
+std::string group_json(const layout& content) { return sealed(unsealed_group(content, MYRIAD_VERSION).dump(1) + '\n'); }
 
 stored_group group_of(std::string_view text, const std::string& path) {
     const json read = json::parse(text, nullptr, false);
@@ -291,15 +289,13 @@ stored_group group_of(std::string_view text, const std::string& path) {
     layout& content = group.content;
     try {
         const json& own = read.at("attributes").at("myriad");
-        require(own.at("format") == store_format || own.at("format") == 1, path, " has format ",
-                own.at("format").dump(), ", and this version of Myriad knows 1 and ", store_format, host::cure,
-                "use the version that wrote it, ", own.at("version").dump());
+        require(own.at("format") == store_format, path, " has format ", own.at("format").dump(),
+                ", and this version of Myriad knows ", store_format, host::cure, "use the version that wrote it, ",
+                own.at("version").dump());
         const seal its = seal_of(text);
-        require(its.stored.empty() || its.is_right(), path, " is damaged (its checksum is ", its.computed,
-                " and should be ", its.stored, "): ", restore_advice);
-        group.format = own.at("format").get<int>();
-        require(group.format == 1 || its.is_right(), path, " is damaged (its checksum is missing): ", restore_advice);
-        if (group.format > 1) group.checksum = its.stored;
+        require(its.is_right(), path, " is damaged (its checksum is ",
+                its.stored.empty() ? "missing" : its.computed + " and should be " + its.stored, "): ", restore_advice);
+        group.checksum = its.stored;
         content.axes = dimensions_from(own.at("axes"));
         content.chunk = own.at("chunk").get<std::int64_t>();
         content.description = own.at("description").dump();
@@ -312,11 +308,6 @@ stored_group group_of(std::string_view text, const std::string& path) {
                                            [](std::int64_t, std::span<double>) {},
                                            attributes_from(c.at("attributes"))});
         content.check();
-        // Stores of format 1 have no checksum, but most of what they say twice.
-        const json again = group_of_format(content, group.format, own.at("version").get<std::string>());
-        const json& arrays = read.at("consolidated_metadata");
-        require(arrays == again.at("consolidated_metadata"), path,
-                " is damaged (it says different things of its arrays): ", restore_advice);
     } catch (const nlohmann::json::exception&) {
         host::refuse({path, " is damaged (an entry is missing, or of another kind): ", restore_advice});
     }

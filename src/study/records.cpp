@@ -27,12 +27,10 @@ auto read_record(const char* kind, std::string_view text, const group_checksum& 
     try {
         const ordered_json entries = ordered_json::parse(text);
         const seal its = seal_of(text);
-        require(its.is_right() || (group.empty() && its.stored.empty()), what, " is damaged: its own checksum is ",
+        require(its.is_right(), what, " is damaged: its own checksum is ",
                 its.computed.empty() ? "missing" : its.computed + " and should be " + its.stored);
-        if (!group.empty()) {
-            require(entries.at("kind") == kind, what, " is damaged: it is that of something else");
-            require(entries.at("group") == group, what, " is that of another study");
-        }
+        require(entries.at("kind") == kind, what, " is damaged: it is that of something else");
+        require(entries.at("group") == group, what, " is that of another study");
         return read(entries);
     } catch (const nlohmann::json::parse_error&) {  // its text quotes the damaged bytes, which may be no characters
         host::refuse({what, " is damaged: it is no JSON"});

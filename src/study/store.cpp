@@ -51,7 +51,7 @@ struct found_group {
 std::string group_path(const std::string& folder) { return folder + "/zarr.json"; }
 std::string copy_path(const std::string& folder) { return folder + "/myriad/group.json"; }
 
-// The copy of a group's file that stores of format 2 have.
+// The copy of a group's file.
 std::optional<found_group> copied_group(file_system& files, const std::string& folder, const std::string& damage) {
     const std::optional<std::string> text = read_text(files, copy_path(folder));
     if (!text) return std::nullopt;
@@ -216,7 +216,7 @@ struct store::implementation : store_files {
                 of_files.push_back(write_coordinate_file(c, file, replaces));
             sync_folder(files, folder + '/' + coordinates[c].name);
         }
-        if (group.format > 1) write_own(places->record_path(), coordinates_json(group.checksum, checksums));
+        write_own(places->record_path(), coordinates_json(group.checksum, checksums));
         places->read_record();
     }
 
@@ -227,10 +227,8 @@ struct store::implementation : store_files {
         write_coordinates(false);
         // A group of its own, so that readers which look at every folder know what it is.
         write_own(own("zarr.json"), own_group);
-        if (group.format > 1) {
-            write_own(copy_path(folder), group_text);
-            make_folder(files, own("results"));
-        }
+        write_own(copy_path(folder), group_text);
+        make_folder(files, own("results"));
         make_folder(files, own("claims"));
         sync_folder(files, folder);
         // The last, as the sign that all this is there.
@@ -250,7 +248,7 @@ struct store::implementation : store_files {
             write_own(path, wanted);
         };
         restore(group_path(folder), "zarr.json", group_text, true);
-        if (group.format > 1) restore(copy_path(folder), "myriad/group.json", group_text, true);
+        restore(copy_path(folder), "myriad/group.json", group_text, true);
         restore(own("zarr.json"), "myriad/zarr.json", own_group, false);
         for (const std::vector<stored_array>* arrays : {&variables, &coordinates})
             for (const stored_array& array : *arrays)
@@ -274,7 +272,7 @@ struct store::implementation : store_files {
         }
         if (!self) return;
         make_folder(files, own("claims"));
-        if (group.format > 1) make_folder(files, own("results"));
+        make_folder(files, own("results"));
     }
 
     // That which the store began with; nothing if it is not known.
@@ -574,8 +572,7 @@ struct store::implementation : store_files {
         made.finish();
         made.rename_to(path_of(variables[v], 0));
         sync_folder(files, folder + '/' + variables[v].name);
-        if (group.format > 1)
-            write_own(result_record_path(v), result_json(group.checksum, variables[v].name, checksum));
+        write_own(result_record_path(v), result_json(group.checksum, variables[v].name, checksum));
     }
 
     // Gives a claim back if another process had done the chunk before.
@@ -720,7 +717,6 @@ std::optional<layout> store::content_of(const std::string& given) {
 
 const layout& store::content() const { return self_->content; }
 const std::string& store::folder() const { return self_->folder; }
-int store::format() const { return self_->group.format; }
 
 bool store::done(std::int64_t chunk) const {
     self_->check_chunk(chunk);

@@ -24,7 +24,6 @@ std::string stored_coordinates::path_of(const stored_array& array, std::int64_t 
 }
 
 void stored_coordinates::read_record() {
-    if (group.empty()) return;
     const std::optional<std::string> text = read_text(files, record_path());
     require(text.has_value(), "the record of the coordinates is missing");
     coordinate_checksums read = coordinates_of(*text, group);
@@ -42,7 +41,7 @@ std::optional<std::uint32_t> stored_coordinates::recorded(const stored_array& ar
 std::string stored_coordinates::check(const stored_array& array, std::int64_t file, std::int64_t begin,
                                       std::int64_t end, std::byte* to) {
     file_check found = read_array_file(files, path_of(array, file), array.shape, begin, end, to);
-    if (group.empty() || !found.damage.empty()) return found.damage;
+    if (!found.damage.empty()) return found.damage;
     // Read again if it does not agree: it may have been mended since.
     for (int attempt = 0; attempt < 2; ++attempt) {
         const std::optional<std::uint32_t> expected = recorded(array, file);
@@ -119,13 +118,11 @@ void store_files::check_chunk(std::int64_t chunk, bool checksums, std::vector<da
     }
 }
 
-bool store_files::has_result(std::size_t v) const {
-    return exists(group.format == 1 ? path_of(variables[v], 0) : result_record_path(v));
-}
+bool store_files::has_result(std::size_t v) const { return exists(result_record_path(v)); }
 
 std::string store_files::check_result(std::size_t v, bool checksums) const {
     const std::string path = path_of(variables[v], 0);
-    const bool has_file = exists(path), has_record = group.format > 1 && exists(result_record_path(v));
+    const bool has_file = exists(path), has_record = exists(result_record_path(v));
     if (!has_file) return has_record ? "it is missing" : "";
     if (!has_length(path, variables[v].shape.file_bytes())) return wrong_length;
     if (!checksums) return "";
@@ -180,7 +177,7 @@ std::string store_files::damage_of_result(std::size_t v, std::byte* to) const {
     const array_shape& shape = variables[v].shape;
     file_check check =
         read_array_file(files, path_of(variables[v], 0), shape, 0, to != nullptr ? shape.file_bytes() - 4 : 0, to);
-    if (group.format == 1 || !check.damage.empty()) return check.damage;
+    if (!check.damage.empty()) return check.damage;
     const std::optional<std::string> text = read_text(files, result_record_path(v));
     if (!text) return "its record is missing";
     try {

@@ -59,8 +59,10 @@ TEST_CASE("kernels have the flags of the build, and those of their compiler") {
         for (const char* const flag : {"-O3", "-ffp-contract=off", "-fno-math-errno"}) CHECK(has(kind, generic, flag));
     CHECK(has("g++", avx2, "-march=x86-64-v3"));
     CHECK(has("zig", avx512, "-march=x86_64_v4"));
-    CHECK(has("g++", avx2, "--param=sra-max-scalarization-size-Ospeed=2048"));
-    CHECK_FALSE(has("clang++", avx2, "--param=sra-max-scalarization-size-Ospeed=2048"));
+    for (const char* const flag : {"--param=sra-max-scalarization-size-Ospeed=2048", "-fno-tree-pta"}) {
+        CHECK(has("g++", avx2, flag));
+        CHECK_FALSE(has("clang++", avx2, flag));
+    }
 }
 
 TEST_CASE("errors are found in what compilers say") {

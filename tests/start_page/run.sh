@@ -27,9 +27,20 @@ cmake -S examples/quickstart -B build/quickstart -DCMAKE_PREFIX_PATH="$PWD/build
 cmake --build build/quickstart
 # end of snippet
 
+{
 # snippet: run
 build/quickstart/quickstart > duffing.csv
 # end of snippet
+} 2>report
+cat report
+
+# The commands build for the machine's own instruction set.
+case $(g++ -march=native -dM -E -x c++ /dev/null) in
+    *__AVX512F__*) best=avx512 ;;
+    *__AVX2__*) best=avx2 ;;
+    *) best='' ;;
+esac
+grep -q "lanes, $best" report
 
 [[ $(wc -l <duffing.csv) == $((4608 * 32 + 1)) ]] # a row for each instance and recorded phase
 if ! has_matplotlib; then

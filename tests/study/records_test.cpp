@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "myriad/study/sealed_text.hpp"
 #include "tests/catch.hpp"
 #include "tests/study/synthetic.hpp"
 #include "tests/support/message_of.hpp"
@@ -30,7 +31,8 @@ TEST_CASE("the record of a chunk comes back, and that of another chunk or study 
     CHECK_THROWS_WITH(record_of(text, content, "87654321", 3), Contains("that of another study"));
     CHECK_THROWS_WITH(record_of("", content, "12345678", 4), Contains("the record of chunk 4 is damaged"));
     CHECK_THROWS_WITH(record_of(text.substr(0, text.size() / 2), content, "12345678", 3), Contains("is damaged"));
-    CHECK_THROWS_WITH(record_of("{}", content, "", 3), Contains("damaged: an entry is missing, or of another kind"));
+    CHECK_THROWS_WITH(record_of(sealed(R"({"checksum": "00000000"})"), content, "12345678", 3),
+                      Contains("damaged: an entry is missing, or of another kind"));
 }
 
 TEST_CASE("a record of which any byte has changed is refused") {
@@ -67,17 +69,19 @@ TEST_CASE("records of coordinates, final results and the arithmetic are not take
     CHECK_THROWS_WITH(coordinates_of(coordinates, "87654321"), Contains("that of another study"));
 }
 
-TEST_CASE("records of stores of format 1 have no checksum of themselves") {
+TEST_CASE("records without a checksum of themselves, or of numbers that are none, are refused") {
     const layout content = tests::synthetic_layout();
-    const std::string text =
-        R"({"chunk": 3, "instances": 4, "device": "CPU", "seconds": 0.5, "statuses": {"ok": 4},
-            "crc32c": {"x": "00000001", "y": "00000002", "count": "00000003", "step": "00000004",
-                       "status": "00000005", "noise": "00000006", "partial": "00000007"}})";
-    CHECK(record_of(text, content, "", 3).checksums.size() == 7);
-    CHECK_THROWS_WITH(record_of(text, content, "12345678", 3), Contains("its own checksum is missing"));
-    std::string wrong = text;
-    wrong.replace(wrong.find("00000006"), 8, "zzzzzzzz");
-    CHECK_THROWS_WITH(record_of(wrong, content, "", 3), Contains("a checksum is no number"));
+    std::string text =
+        R"({"kind": "chunk", "group": "12345678", "chunk": 3, "instances": 4, "device": "CPU", "seconds": 0.5,
+            "statuses": {"ok": 4}, "crc32c": {"x": "00000001", "y": "00000002", "count": "00000003",
+            "step": "00000004", "status": "00000005", "noise": "00000006", "partial": "00000007"},
+            "checksum": "00000000"})";
+    CHECK(record_of(sealed(text), content, "12345678", 3).checksums.size() == 7);
+    std::string without = text;
+    without.erase(without.rfind(",\n"), without.size() - 1 - without.rfind(",\n"));
+    CHECK_THROWS_WITH(record_of(without, content, "12345678", 3), Contains("its own checksum is missing"));
+    text.replace(text.find("00000006"), 8, "zzzzzzzz");
+    CHECK_THROWS_WITH(record_of(sealed(text), content, "12345678", 3), Contains("a checksum is no number"));
 }
 
 }  // namespace

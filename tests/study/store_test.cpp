@@ -295,6 +295,16 @@ TEST_CASE("a folder with other files is refused, and nothing is written there") 
     CHECK_NOTHROW(store::create_or_resume(folder / "empty", synthetic_layout()));
 }
 
+TEST_CASE("a study whose folder is a link to nothing is not told that the folder was removed") {
+    tests::temporary_folder folder;
+    std::filesystem::create_symlink(folder / "gone", folder / "link");
+    const std::string refused = folder / "link is a link to " + (folder / "gone, which is not there: make that folder");
+    CHECK_THROWS_WITH(store::create_or_resume(folder / "link", synthetic_layout()), Contains(refused));
+    CHECK_THROWS_WITH(store::create_or_resume(folder / "link/run", synthetic_layout()), Contains(refused));
+    std::filesystem::create_directory(folder / "gone");
+    CHECK_NOTHROW(store::create_or_resume(folder / "link", synthetic_layout()));
+}
+
 TEST_CASE("a store of a later format is refused with the version that wrote it") {
     tests::temporary_folder folder;
     { store::create_or_resume(folder / "run", synthetic_layout()); }

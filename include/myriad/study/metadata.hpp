@@ -45,8 +45,7 @@ std::string array_json(const array_shape& shape, const std::vector<attribute>& a
 /// What the file of a group says.
 struct stored_group {
     layout content;        ///< with coordinates without values
-    int format = 0;        ///< of the store
-    std::string checksum;  ///< of the file, by which records name it; empty in format 1
+    std::string checksum;  ///< of the file, by which records name it
 };
 /// Throws `error` that begins with `path` if the text is none of `group_json`, or is damaged.
 stored_group group_of(std::string_view text, const std::string& path);

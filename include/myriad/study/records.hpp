@@ -15,8 +15,7 @@
 
 namespace myriad::studies::inline MYRIAD_ABI {
 
-/// The group that a record belongs to: the checksum of its file zarr.json. Stores of format 1 have none, and their
-/// records may have no checksum.
+/// The group that a record belongs to: the checksum of its file zarr.json.
 using group_checksum = std::string;
 
 /// What the record of a chunk holds.

@@ -145,9 +145,6 @@ public:
     const studies::layout& content() const override;
     /// The folder, as an absolute path.
     const std::string& folder() const;
-    /// The format: 2, or 1 for a store of an earlier version, which has no checksums of its metadata, coordinates and
-    /// final results.
-    int format() const;
 
     /// Whether a chunk is done, as far as this process has seen: `claim_next` and `refresh` look at the folder.
     bool done(std::int64_t chunk) const override;

@@ -43,7 +43,7 @@ public:
                       std::byte* to = nullptr);
     /// The values [first, first + size). Throws `error` if they are damaged.
     void read(const stored_array& array, std::int64_t first, std::span<double> values);
-    /// Reads the record again. Throws `error` if it is damaged or missing; does nothing in format 1.
+    /// Reads the record again. Throws `error` if it is damaged or missing.
     void read_record();
     /// The checksums of their files; empty before `read_record`.
     coordinate_checksums record;

@@ -102,6 +102,40 @@ TEST_CASE("both backends agree to what the event tolerance implies") {
     CHECK(steps == Approx(1).epsilon(0.02));
 }
 
+TEST_CASE("steps that a GPU keeps in shared memory find the events and samples of the CPU, in blocks of any size") {
+    const auto chains = [](const myriad::device& where, std::int64_t block) {
+        myriad::ensemble<long_chain> e(200);
+        for (int c = 0; c < long_chain::n_state; ++c) e.state(c) = c == long_chain::first ? 1 : 0;
+        e.parameter(long_chain::rate) = Eigen::ArrayXd::LinSpaced(200, 0.5, 2);
+        e.time_domain(0, 40);
+        myriad::options o;
+        o.samples.times = {1, 10, 40};
+        o.samples.capacity = 3;
+        o.samples.states = {long_chain::first, long_chain::last};
+        o.block_size = block;
+        REQUIRE(myriad::solve<myriad::dense<myriad::dormand_prince_5>>(where, e, o).failed() == 0);
+        return e;
+    };
+    const auto here = chains(test_device(), 0), there = chains(myriad::device::cpu(), 0);
+    const auto other = chains(test_device(), 32);
+    double apart = 0;
+    std::int64_t other_counts = 0, other_bits = 0;
+    for (std::int64_t i = 0; i < 200; ++i) {
+        other_counts += here.integer_accessory(long_chain::crossings)(i) !=
+                        there.integer_accessory(long_chain::crossings)(i);
+        for (int c = 0; c < long_chain::n_state; ++c) {
+            apart = std::max(apart, std::abs(here.state(c)(i) - there.state(c)(i)));
+            other_bits += here.state(c)(i) != other.state(c)(i);
+        }
+        for (const int c : {long_chain::first, long_chain::last})
+            apart = std::max(apart, (here.samples().state(c) - there.samples().state(c)).row(i).abs().maxCoeff());
+    }
+    CHECK(there.integer_accessory(long_chain::crossings).minCoeff() >= 1);
+    CHECK(other_counts == 0);
+    CHECK(apart < 1e-8);
+    CHECK(other_bits == 0);
+}
+
 TEST_CASE("both backends agree in single precision") {
     myriad::ensemble<swing, float> here(300), there(300);
     fill(here);

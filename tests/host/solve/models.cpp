@@ -8,3 +8,4 @@ MYRIAD_INSTANTIATE(solving::swing, myriad::runge_kutta_4, myriad::cash_karp, myr
 MYRIAD_INSTANTIATE_FLOAT(solving::swing, myriad::cash_karp)
 MYRIAD_INSTANTIATE(solving::heat, myriad::runge_kutta_4)
 MYRIAD_INSTANTIATE(solving::drift, myriad::runge_kutta_4, myriad::cash_karp)
+MYRIAD_INSTANTIATE(solving::long_chain, myriad::dense<myriad::dormand_prince_5>)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Models for the tests of solvers and backends: one with every kind of data that a kernel copies in and out, one whose
-// shared parameters are a matrix, one that costs next to nothing.
+// shared parameters are a matrix, one with many states, one that costs next to nothing.
 #pragma once
 
 #include <myriad/model.hpp>
@@ -66,6 +66,31 @@ struct heat {
             slope[i] = p[rate] * sum;
         }
         return slope;
+    }
+};
+
+/// A chain of populations, each of which becomes the next one: its trial steps are too large for a GPU's registers.
+struct long_chain {
+    enum state { first, last = 29, n_state };
+    enum parameter { rate, n_parameter };
+    enum integer_accessory { crossings, n_integer_accessory };
+    enum event { half_gone, n_event };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& y, const auto& p) {
+        myriad::vec<R, n_state> slope;
+        slope[first] = p[rate] * (y[last] - y[first]);
+        MYRIAD_UNROLL
+        for (int i = 1; i < n_state; ++i) slope[i] = p[rate] * (y[i - 1] - y[i]);
+        return slope;
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto, const myriad::vec<R, n_state>& y, const auto&) {
+        return {y[first] - R(0.5)};
+    }
+    MYRIAD_FUNCTION static void after_event(int, auto& lane) {
+        ++lane.integer_accessory[crossings];
+        lane.y[last] *= myriad::real_of<std::remove_cvref_t<decltype(lane.y[last])>>(0.75);
     }
 };
 

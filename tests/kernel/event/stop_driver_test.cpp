@@ -17,8 +17,6 @@
 
 namespace {
 
-using compare::each_adaptive_method;
-using compare::each_method;
 using compare::fixed_step;
 using compare::with_tolerance;
 using myriad::ensemble;
@@ -35,6 +33,19 @@ using stops::prolonged;
 using stops::squared;
 
 constexpr double beyond = 1e6 - 1;  // of any domain here
+
+/// Calls `test.operator()<Method>()` for fixed and for adaptive steps.
+template <class Test>
+void each_method(Test test) {
+    {
+        INFO("runge_kutta_4");
+        test.template operator()<myriad::runge_kutta_4>();
+    }
+    {
+        INFO("tsitouras_5");
+        test.template operator()<myriad::tsitouras_5>();
+    }
+}
 
 /// One instance that gets `doses` doses of 1, the first at `first`, then one every `interval`.
 template <class Model = dosed>
@@ -245,16 +256,14 @@ TEST_CASE("steps that would end within rounding of a stop end at it, and no step
     });
 }
 TEST_CASE("after a stop adaptive steps are as long as they would have been") {
-    each_adaptive_method([]<class Method> {
-        // a stop right behind another: the step between them says nothing of the next
-        auto e = with_list({1, 1 + 1e-9, beyond, beyond}, beyond, 100);
-        options o = with_tolerance(1e-9, 1);
-        o.maximum_step = 10;
-        solve<Method>(tests::test_device(), e, o);
-        CHECK(code_of(e) == 11);
-        CHECK(e.accepted_steps()[0] <= 16);  // 1, to the second stop, 5, and nine of 10
-        CHECK(e.rejected_steps()[0] == 0);
-    });
+    // a stop right behind another: the step between them says nothing of the next
+    auto e = with_list({1, 1 + 1e-9, beyond, beyond}, beyond, 100);
+    options o = with_tolerance(1e-9, 1);
+    o.maximum_step = 10;
+    solve<myriad::tsitouras_5>(tests::test_device(), e, o);
+    CHECK(code_of(e) == 11);
+    CHECK(e.accepted_steps()[0] <= 16);  // 1, to the second stop, 5, and nine of 10
+    CHECK(e.rejected_steps()[0] == 0);
 }
 TEST_CASE("backwards in time stops are met in the order of their numbers") {
     each_method([]<class Method> {
@@ -270,7 +279,7 @@ TEST_CASE("backwards in time stops are met in the order of their numbers") {
     });
 }
 TEST_CASE("the right-hand side is as the action leaves it") {
-    const auto check = []<class Method>() {
+    each_method([]<class Method> {
         ensemble<infused> e(1);
         e.state(0) = 0.0;
         e.parameter(infused::rate) = 0.0;
@@ -281,12 +290,10 @@ TEST_CASE("the right-hand side is as the action leaves it") {
         // y' = 1 - y over 1.2, then y' = -y over 1.1; Runge-Kutta 4 with h = 1/64 within h^4 / 120
         CHECK(std::abs(e.state(0)[0] - (1 - std::exp(-1.2)) * std::exp(-1.1)) < 1e-9);
         CHECK(e.parameter(infused::rate)[0] == 0.0);
-    };
-    check.operator()<myriad::runge_kutta_4>();
-    check.operator()<myriad::tsitouras_5>();
+    });
 }
 TEST_CASE("a sample at a stop time shows the state before the action") {
-    const auto check = []<class Method>() {
+    each_method([]<class Method> {
         auto e = treated(0, 0.5, 4, 2);
         options o = with_tolerance(1e-9);
         o.samples.states = {dosed::gut};
@@ -302,9 +309,7 @@ TEST_CASE("a sample at a stop time shows the state before the action") {
         CHECK(std::abs(gut(0, 3) - (1 + left)) < 1e-7);
         CHECK(std::abs(gut(0, 4) - (1 + left) * left) < 1e-7);
         CHECK(std::abs(gut(0, 5) - (1 + left + left * left + left * left * left) * left) < 1e-7);
-    };
-    check.operator()<myriad::runge_kutta_4>();
-    check.operator()<myriad::tsitouras_5>();
+    });
 }
 TEST_CASE("an event sets a stop time, and the action follows it by the delay") {
     const auto check = []<class Model, class Method>() {
@@ -372,22 +377,17 @@ TEST_CASE("an action moves the end of its phase") {
     });
 }
 TEST_CASE("tangents pass an action at a stop time like differences of trajectories") {
-    const auto check = []<class Method>() {
-        using model = myriad::with_tangents<squared>;
-        ensemble<model> e(1);
-        myriad::initial_tangents(e);
-        e.state(0) = 2.0;
-        e.parameter(squared::time) = 1.0;
-        e.time_domain(0, 2);
-        options o = with_tolerance(1e-10, 1.0 / 256);
-        solve<Method>(tests::test_device(), e, o);
-        // x(t) = x0 / (1 + x0 t); then squared: 4/9 at t = 1, where dx/dx0 = 1/9, times 2 x = 4/3
-        const double at_stop = 4.0 / 9, growth = std::log(1.0 / 9 * 4.0 / 3 / std::pow(1 + at_stop, 2));
-        CHECK(std::abs(e.state(0)[0] - at_stop / (1 + at_stop)) < 1e-8);
-        CHECK(std::abs(e.accessory(model::growth())[0] - growth) < 1e-8);
-    };
-    check.operator()<myriad::runge_kutta_4>();
-    check.operator()<myriad::tsitouras_5>();
+    using model = myriad::with_tangents<squared>;
+    ensemble<model> e(1);
+    myriad::initial_tangents(e);
+    e.state(0) = 2.0;
+    e.parameter(squared::time) = 1.0;
+    e.time_domain(0, 2);
+    solve<myriad::tsitouras_5>(tests::test_device(), e, with_tolerance(1e-10));
+    // x(t) = x0 / (1 + x0 t); then squared: 4/9 at t = 1, where dx/dx0 = 1/9, times 2 x = 4/3
+    const double at_stop = 4.0 / 9, growth = std::log(1.0 / 9 * 4.0 / 3 / std::pow(1 + at_stop, 2));
+    CHECK(std::abs(e.state(0)[0] - at_stop / (1 + at_stop)) < 1e-8);
+    CHECK(std::abs(e.accessory(model::growth())[0] - growth) < 1e-8);
 }
 TEST_CASE("instances with different stop times have the same bits alone and in any company") {
     each_method([]<class Method> {

@@ -4,6 +4,7 @@
 
 #include <type_traits>
 
+#include <myriad/action_queue.hpp>
 #include <myriad/model.hpp>
 
 namespace triggers {
@@ -136,6 +137,78 @@ struct relay {
         lane.y[x] -= R(2);
         lane.accessory[due] = myriad::nan_of<R>;
         lane.integer_accessory[actions] += 1;
+    }
+};
+
+/// x' = 1 from 0. Where x reaches 1 two actions are put for t = 2, `low` and `high`. The latter moves y, and where y is
+/// high an action is put that runs at once, of a priority between them. code = 10 * code + action + 1.
+struct cascade {
+    enum action { low, between, high, n_actions };
+    using queue = myriad::action_queue<0, 1, n_actions>;
+    enum state { x, y, n_state };
+    enum accessory { n_accessory = queue::n_accessory };
+    enum integer_accessory { code, n_integer_accessory = 1 + queue::n_integer_accessory };
+    enum event { reached, moved, n_event };
+    enum trigger { begins, follows, n_trigger };
+    enum stop { due, n_stop };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>&, const auto&) {
+        return {R(1), R(0)};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto, const myriad::vec<R, n_state>& s, const auto&) {
+        return {s[x] - R(1), s[y] - R(0.5)};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static R stop_time(int, int, const auto& p) {
+        return queue::next_time(p);
+    }
+    MYRIAD_FUNCTION static bool condition(int trigger, const auto& positive) { return positive[trigger]; }
+    MYRIAD_FUNCTION static myriad::action after_trigger(int trigger, auto& lane) {
+        using R = std::remove_cvref_t<decltype(lane.t)>;
+        const bool fits = trigger == follows ? queue::put(lane, between, lane.t)
+                                             : queue::put(lane, low, R(2)) && queue::put(lane, high, R(2));
+        return fits ? myriad::action::proceed : myriad::action::overflow;
+    }
+    MYRIAD_FUNCTION static void after_stop(int, int, auto& lane) {
+        const int taken = queue::take(lane, [](int action) MYRIAD_LAMBDA { return action; }).action;
+        lane.integer_accessory[code] = 10 * lane.integer_accessory[code] + taken + 1;
+        if (taken == high) lane.y[y] = 1;
+    }
+};
+
+/// x' = rate, and at the time c an action sets x to 1. The times at which x >= 1 and x > 1 came to hold, and how often.
+struct edges {
+    enum state { x, n_state };
+    enum parameter { rate, c, n_parameter };
+    enum accessory { t_reached, t_passed, n_accessory };
+    enum integer_accessory { times_reached, times_passed, n_integer_accessory };
+    enum event { beyond, short_of, clock, n_event };
+    enum trigger { sets, reaches, passes, n_trigger };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>&, const auto& p) {
+        return myriad::vec<R, n_state>{R(p[rate])};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto t, const myriad::vec<R, n_state>& y, const auto& p) {
+        return {y[x] - R(1), R(1) - y[x], R(t - p[c])};
+    }
+    MYRIAD_FUNCTION static bool condition(int trigger, const auto& positive) {
+        if (trigger == sets) return positive[clock];
+        return trigger == reaches ? positive[beyond] : !positive[short_of];
+    }
+    MYRIAD_FUNCTION static void after_trigger(int trigger, auto& lane) {
+        if (trigger == sets) {
+            lane.y[x] = 1;
+        } else if (trigger == reaches) {
+            lane.accessory[t_reached] = lane.t;
+            lane.integer_accessory[times_reached] += 1;
+        } else {
+            lane.accessory[t_passed] = lane.t;
+            lane.integer_accessory[times_passed] += 1;
+        }
     }
 };
 

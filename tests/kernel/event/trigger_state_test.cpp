@@ -22,7 +22,9 @@ using myriad::options;
 using myriad::solve;
 using myriad::status;
 using triggers::alone;
+using triggers::cascade;
 using triggers::chain;
+using triggers::edges;
 using triggers::logic;
 using triggers::relay;
 using triggers::thermostat;
@@ -60,7 +62,6 @@ template <class Test>
 void each_logic(Test test) {
     test.template operator()<logic, myriad::runge_kutta_4>();
     test.template operator()<logic, myriad::tsitouras_5>();
-    test.template operator()<alone<logic>, myriad::runge_kutta_4>();
     test.template operator()<alone<logic>, myriad::tsitouras_5>();
 }
 
@@ -135,27 +136,81 @@ TEST_CASE("a condition waits for the function that holds last") {
     CHECK(e.integer_accessory(thermostat::switched)[2] == 1);
 }
 TEST_CASE("a trigger's action sets a stop time, also for the same instant, and the stop's action resets the trigger") {
-    const auto check = []<class Model, class Method>() {
-        // from 0 it reaches 1 at 1, 3 and 5; from 3/2, above it at first, at once
-        ensemble<Model> e(4);
-        e.state(0) << 0, 0, 1.5, 1.5;
-        e.parameter(relay::delay) << 0, 0.5, 0, 0.25;
-        e.time_domain(0, 6);
-        solve<Method>(tests::test_device(), e, with_tolerance(1e-9, 0.15));
-        for (int i = 0; i < 4; ++i) CHECK(e.status(i) == status::success);
-        for (const int i : {0, 1}) {
-            CHECK(e.integer_accessory(relay::actions)[i] == 3);
-            CHECK(std::abs(e.state(0)[i]) < 1e-9);
-        }
-        for (const int i : {2, 3}) {
-            CHECK(e.integer_accessory(relay::actions)[i] == 4);  // at 0, 3/2, 7/2 and 11/2
-            CHECK(std::abs(e.state(0)[i] + 0.5) < 1e-9);
+    // from 0 it reaches 1 at 1, 3 and 5; from 3/2, above it at first, at once
+    ensemble<relay> e(4);
+    e.state(0) << 0, 0, 1.5, 1.5;
+    e.parameter(relay::delay) << 0, 0.5, 0, 0.25;
+    e.time_domain(0, 6);
+    solve<myriad::tsitouras_5>(tests::test_device(), e, with_tolerance(1e-9));
+    for (int i = 0; i < 4; ++i) CHECK(e.status(i) == status::success);
+    for (const int i : {0, 1}) {
+        CHECK(e.integer_accessory(relay::actions)[i] == 3);
+        CHECK(std::abs(e.state(0)[i]) < 1e-9);
+    }
+    for (const int i : {2, 3}) {
+        CHECK(e.integer_accessory(relay::actions)[i] == 4);  // at 0, 3/2, 7/2 and 11/2
+        CHECK(std::abs(e.state(0)[i] + 0.5) < 1e-9);
+    }
+}
+
+TEST_CASE("what an action brings about comes before the next that is due, if its priority is higher") {
+    const auto check = []<class Model>() {
+        ensemble<Model> e(3);
+        for (int c = 0; c < cascade::n_state; ++c) e.state(c) = 0.0;
+        e.time_domain(0, 3);
+        solve<myriad::tsitouras_5>(tests::test_device(), e, with_tolerance(1e-9));
+        for (int i = 0; i < 3; ++i) {
+            CHECK(e.status(i) == status::success);
+            CHECK(e.integer_accessory(cascade::code)[i] == 321);
         }
     };
-    check.operator()<relay, myriad::runge_kutta_4>();
-    check.operator()<relay, myriad::tsitouras_5>();
-    check.operator()<alone<relay>, myriad::runge_kutta_4>();
-    check.operator()<alone<relay>, myriad::tsitouras_5>();
+    check.operator()<cascade>();
+    check.operator()<alone<cascade>>();
+}
+
+TEST_CASE("a function on its surface counts as positive, and at the same instant as on the side to which it goes") {
+    struct expected {
+        double x, rate, c;  // c is after the end where no action sets x
+        int reached;
+        double t_reached;
+        int passed;
+        double t_passed;
+    };
+    const std::vector<expected> all = {
+        {0, 1, 9, 1, 1, 1, 1},           // both at the crossing
+        {1, 1, 9, 0, -1, 1, 0},          // x >= 1 has held all the time, x > 1 begins to right after the start
+        {1, -1, 9, 0, -1, 0, -1},        // and here x >= 1 ceases to
+        {1, 0, 9, 0, -1, 0, -1},         //
+        {0, 1, 0.25, 1, 0.25, 1, 0.25},  // set to 1 by an action
+        {0, -1, 0.25, 1, 0.25, 0, -1},   //
+        {0, 0, 0.25, 1, 0.25, 0, -1},    //
+        {3, -1, 0.25, 0, -1, 0, -1},     // from above, x >= 1 holds still, and then ceases to
+        {3, 1, 0.25, 0, -1, 1, 0.25},    // x > 1 fails for the instant
+    };
+    const auto check = [&]<class Model>() {
+        ensemble<Model> e(static_cast<std::int64_t>(all.size()));
+        for (std::size_t k = 0; k < all.size(); ++k) {
+            const auto i = static_cast<std::int64_t>(k);
+            e.state(0)[i] = all[k].x;
+            e.parameter(edges::rate)[i] = all[k].rate;
+            e.parameter(edges::c)[i] = all[k].c;
+        }
+        for (int c = 0; c < edges::n_accessory; ++c) e.accessory(c) = -1.0;
+        for (int c = 0; c < edges::n_integer_accessory; ++c) e.integer_accessory(c) = 0;
+        e.time_domain(0, 2);
+        solve<myriad::tsitouras_5>(tests::test_device(), e, with_tolerance(1e-9, 0.3));
+        for (std::size_t k = 0; k < all.size(); ++k) {
+            CAPTURE(k);
+            const auto i = static_cast<std::int64_t>(k);
+            CHECK(e.status(i) == status::success);
+            CHECK(e.integer_accessory(edges::times_reached)[i] == all[k].reached);
+            CHECK(e.integer_accessory(edges::times_passed)[i] == all[k].passed);
+            CHECK(std::abs(e.accessory(edges::t_reached)[i] - all[k].t_reached) < 1e-12);
+            CHECK(std::abs(e.accessory(edges::t_passed)[i] - all[k].t_passed) < 1e-12);
+        }
+    };
+    check.operator()<edges>();
+    check.operator()<alone<edges>>();
 }
 
 namespace {

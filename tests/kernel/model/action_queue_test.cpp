@@ -69,6 +69,9 @@ TEST_CASE("an action whose time is the present or has passed runs at once, and o
         CHECK(e.accessory(queued::last_time)[0] == 1.0);
     });
 }
+TEST_CASE("an action whose time is infinite never runs") {
+    each([]<class Method>() { CHECK(code_of(run<Method>({2, 1000, 3})) == 13); });
+}
 TEST_CASE("the queue goes on from phase to phase") {
     each([]<class Method>() { CHECK(code_of(run<Method>({4.1, 2.2, 3.3}, {.phases = 7})) == 231); });
 }
@@ -77,6 +80,14 @@ TEST_CASE("actions at one time run by priority, and in the order of put if they 
         CHECK(code_of(run<Method>({2, 2, 2})) == 123);
         CHECK(code_of(run<Method>({2, 2, 2}, {.by_number = 1})) == 321);
         CHECK(code_of(run<Method>({3, 2, 2}, {.by_number = 1})) == 321);
+    });
+}
+TEST_CASE("rounding of their times does not decide which of two actions comes first") {
+    each([]<class Method>() {
+        constexpr double less = 2 - 1e-13, more = 2 + 1e-13;
+        CHECK(code_of(run<Method>({more, 2, less}, {.by_number = 1})) == 321);
+        CHECK(code_of(run<Method>({less, more, 2}, {.by_number = 1})) == 321);
+        CHECK(code_of(run<Method>({2 - 1e-6, 2 + 1e-6, 2}, {.by_number = 1})) == 132);
     });
 }
 TEST_CASE("with a seed, actions that tie run in an order of the instance's own, the same in every run") {

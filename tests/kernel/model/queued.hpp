@@ -6,7 +6,7 @@
 #include <myriad/model.hpp>
 
 /// x' = 1 from 0. At t = 1 `count` actions are put, for the times in the parameters; they note their numbers, code = 10
-/// * code + action + 1, the time, and what x was when they were put and when they ran.
+/// * code + action + 1, the time, and what x was when they were put and when they ran. Times from 100 on are infinite.
 struct queued {
     static constexpr int room = 3;
     using queue = myriad::action_queue<2, 1, room, 1>;
@@ -30,8 +30,10 @@ struct queued {
         using R = std::remove_cvref_t<decltype(lane.t)>;
         if (stop == putting) {
             lane.accessory[sum] = R(0);
-            for (int k = 0; k < lane.shared_integer[count]; ++k)
-                if (!queue::put(lane, k, lane.parameter[k], {lane.y[x]})) return myriad::action::overflow;
+            for (int k = 0; k < lane.shared_integer[count]; ++k) {
+                const R time = lane.parameter[k] < R(100) ? lane.parameter[k] : myriad::infinity_of<R>;
+                if (!queue::put(lane, k, time, {lane.y[x]})) return myriad::action::overflow;
+            }
             queue::cancel(lane, lane.shared_integer[cancelled] - 1);
             return myriad::action::proceed;
         }

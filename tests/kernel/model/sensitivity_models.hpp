@@ -19,6 +19,7 @@ struct decay {
     }
 };
 using decay_by_all = myriad::with_sensitivities<decay, decay::k, decay::x, decay::B, decay::unused>;
+using uncontrolled_decay = myriad::uncontrolled_sensitivities<decay, decay::k, decay::x, decay::B, decay::unused>;
 
 /// A ball that bounces off a floor at a given height with restitution r; it notes the time and the speed of the last
 /// impact, and counts impacts. With a `last` impact that ends the phase.

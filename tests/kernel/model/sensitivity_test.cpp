@@ -134,8 +134,33 @@ TEST_CASE("without error control of sensitivities the solution has the bits that
     myriad::solve<myriad::tsitouras_5>(tests::test_device(), alone, o);
     o.relative_tolerance = o.absolute_tolerance = myriad::without_tangents<decay_by_all>(1e-8);
     myriad::solve<myriad::tsitouras_5>(tests::test_device(), e, o);
+    myriad::ensemble<uncontrolled_decay> cheap(64);
+    fill(cheap);
+    myriad::initial_sensitivities(cheap);
+    myriad::solve<myriad::tsitouras_5>(tests::test_device(), cheap, o);
+    for (int c = 0; c < uncontrolled_decay::n_state; ++c)
+        for (Index i = 0; i < e.size(); ++i) CHECK_THAT(cheap.state(c)[i], near(e.state(c)[i]));
     if (!tests::tests_cpu()) return;
-    for (int c = 0; c < decay::n_state; ++c) CHECK(same_bits_everywhere(e.state(c), alone.state(c)));
+    for (int c = 0; c < decay::n_state; ++c) {
+        CHECK(same_bits_everywhere(e.state(c), alone.state(c)));
+        CHECK(same_bits_everywhere(cheap.state(c), alone.state(c)));
+    }
+}
+
+TEST_CASE("a sensitivity without error control that overflows ends its instance as not finite") {
+    myriad::ensemble<uncontrolled_decay> e(2);
+    e.parameter(decay::k) << 1, -1;
+    e.parameter(decay::unused) = 0;
+    e.shared(decay::B) = 0;
+    e.shared(decay::other) = 0;
+    e.state(decay::x) = 1;
+    e.state(decay::w) = 0;
+    e.time_domain(0, 1);
+    myriad::initial_sensitivities(e);
+    e.state(uncontrolled_decay::sensitivity(decay::x, 1)) << 1e300, 1e308;  // times exp(-k) at the end
+    myriad::solve<myriad::tsitouras_5>(tests::test_device(), e, with_tolerance(1e-8));
+    CHECK(e.status(0) == myriad::status::success);
+    CHECK(e.status(1) == myriad::status::not_finite);
 }
 
 TEST_CASE("sensitivities pass impacts, and accessories that actions set have them too") {

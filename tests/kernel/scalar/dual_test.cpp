@@ -16,6 +16,7 @@ using myriad::detail::any;
 using myriad::detail::bits;
 using myriad::detail::get_lane;
 using myriad::detail::partial;
+using myriad::detail::partials;
 using myriad::detail::set_lane;
 
 namespace {
@@ -60,6 +61,14 @@ void check_derivative(const char* name, F f, G g, double x) {
         CHECK(bits(still.value) == bits(plain.value));
         CHECK(still.derivative.zero);
         CHECK(still.derivative == T(0));
+
+        // Three at once, of which one is always zero. Quotients are by a reciprocal, which rounds once more.
+        const partials<T, 3> given{{partial<T>(T(3)), partial<T>::none(), partial<T>(T(-1))}};
+        const auto several = f(dual<T, partials<T, 3>>(at, given));
+        CHECK(bits(several.value) == bits(plain.value));
+        check_close(several.derivative.in[0].value, plain.derivative);
+        CHECK(several.derivative.in[1].zero);
+        check_close(several.derivative.in[2].value, -plain.derivative / 3);
 
         using P = pack<T, 2>;
         P lanes(T(0.25));
@@ -189,6 +198,18 @@ TEST_CASE("a derivative that is always zero stays zero beside infinities, and ot
     CHECK(select(true, moving, still).derivative == 3);
     CHECK(!select(true, still, moving).derivative.zero);
     CHECK(select(true, still, number(1.0)).derivative.zero);
+}
+
+TEST_CASE("an exponent that moves in one direction does not spoil the power of a negative base in another") {
+    using number = dual<double, partials<double, 2>>;
+    const number base(-2.0, {{partial<double>(1.0), partial<double>::none()}});
+    const number exponent(3.0, {{partial<double>::none(), partial<double>(1.0)}});
+    const number power = pow(base, exponent);
+    CHECK(power.value == -8);
+    check_close(power.derivative.in[0].value, 12.0L);
+    CHECK(std::isnan(power.derivative.in[1].value));
+    CHECK(!is_finite(power));
+    CHECK(is_finite(number(power.value)));
 }
 
 TEST_CASE("comparisons look at values alone, and select takes values with their derivatives") {

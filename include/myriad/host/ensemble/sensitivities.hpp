@@ -9,9 +9,8 @@ namespace myriad {
 
 /// Sets the sensitivities of all instances where the solution starts: one of an initial state by itself, and zero of
 /// all others. Where initial states depend on the components, set their derivatives afterwards.
-template <class Model, auto... wrt, class R>
-void initial_sensitivities(ensemble<with_sensitivities<Model, wrt...>, R>& e) {
-    using wrapped = with_sensitivities<Model, wrt...>;
+template <class wrapped, class R>
+requires(wrapped::n_directions > 0) void initial_sensitivities(ensemble<wrapped, R>& e) {
     for (int i = 0; i < wrapped::n_directions; ++i) {
         const detail::moving_component its = wrapped::directions::all[i];
         for (int c = 0; c < wrapped::n_original; ++c)

@@ -19,7 +19,7 @@ MYRIAD_FUNCTION S step_by_slope(const kernel_arguments<Model, real_of<S>>& args,
     using R = real_of<S>;
     S rate = S(R(0));  // of the fastest component, in parts of its size
     MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
-    for (int c = 0; c < n_state<Model>; ++c) {
+    for (int c = 0; c < n_controlled<Model>; ++c) {
         const R rtol = detail::relative_tolerance_of(args, c), atol = detail::absolute_tolerance_of(args, c);
         S tolerance = larger(S(rtol) * abs(s.data.y[c]), S(atol));
         const S relative = S(rtol) * abs(slope[c]) / tolerance;
@@ -40,11 +40,11 @@ MYRIAD_FUNCTION S step_by_curvature(const kernel_arguments<Model, real_of<S>>& a
                                     integration_state<Model, Method, S>& s, const mask_of<S>& open,
                                     const vec<S, n_state<Model>>& slope0) {
     using R = real_of<S>;
-    constexpr int n = n_state<Model>;
+    constexpr int n = n_state<Model>, controlled = n_controlled<Model>;
     const S direction = copysign(S(R(1)), s.data.t_end - s.data.t);
-    S scale[n], d0 = S(R(0)), d1 = S(R(0)), d2 = S(R(0));
+    S scale[controlled], d0 = S(R(0)), d1 = S(R(0)), d2 = S(R(0));
     MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
-    for (int c = 0; c < n; ++c) {
+    for (int c = 0; c < controlled; ++c) {
         scale[c] =
             fma(S(detail::relative_tolerance_of(args, c)), abs(s.data.y[c]), S(detail::absolute_tolerance_of(args, c)));
         if constexpr (scales_tolerances<Method>) scale[c] = scale[c] * s.steps.tolerance_scale;
@@ -61,7 +61,7 @@ MYRIAD_FUNCTION S step_by_curvature(const kernel_arguments<Model, real_of<S>>& a
     const auto slope = detail::evaluate_rhs<Model>(fma(direction, h0, s.data.t), y, s.data);
     s.extra_evaluations = count_where(open, s.extra_evaluations);
     MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
-    for (int c = 0; c < n; ++c) d2 = larger(abs(slope[c] - slope0[c]) / (scale[c] * h0), d2);
+    for (int c = 0; c < controlled; ++c) d2 = larger(abs(slope[c] - slope0[c]) / (scale[c] * h0), d2);
     d2 = team_for<Model>::largest(d2);
     const S most = larger(d1, d2);
     const S power = S(fast_power(S(R(0.01)) / most, S(R(1.0 / (estimate_order<Method> + 1)))));

@@ -87,13 +87,13 @@ struct error_scale {
     mask_of<S> finite;  // no component of y1 is infinite; a NaN makes its ratio NaN
 };
 template <class Method, class Model, class S>
-MYRIAD_FUNCTION error_scale<S, n_state<Model>> scale_of_errors(const kernel_arguments<Model, real_of<S>>& args,
-                                                               const vec<S, n_state<Model>>& y,
-                                                               const vec<S, n_state<Model>>& y1) {
-    error_scale<S, n_state<Model>> scale;
+MYRIAD_FUNCTION error_scale<S, n_controlled<Model>> scale_of_errors(const kernel_arguments<Model, real_of<S>>& args,
+                                                                    const vec<S, n_state<Model>>& y,
+                                                                    const vec<S, n_state<Model>>& y1) {
+    error_scale<S, n_controlled<Model>> scale;
     S largest = S(real_of<S>(0));  // may skip NaN
     MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
-    for (int c = 0; c < n_state<Model>; ++c) {
+    for (int c = 0; c < n_controlled<Model>; ++c) {
         const S atol = S(detail::absolute_tolerance_of(args, c)), rtol = S(detail::relative_tolerance_of(args, c));
         const S size = larger_magnitude(y[c], y1[c]);
         if constexpr (!tells_infinity<S>) largest = c == 0 ? size : larger(largest, size);
@@ -104,6 +104,12 @@ MYRIAD_FUNCTION error_scale<S, n_state<Model>> scale_of_errors(const kernel_argu
         }
     }
     scale.finite = tells_infinity<S> ? mask_of<S>(true) : largest <= S(largest_of<real_of<S>>);
+    if constexpr (n_uncontrolled < Model >> 0) {
+        S others = S(real_of<S>(0));  // NaN if one of them is not finite
+        MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
+        for (int c = n_controlled<Model>; c < n_state<Model>; ++c) others = fma(S(real_of<S>(0)), y1[c], others);
+        scale.finite = scale.finite & (others == others);
+    }
     return scale;
 }
 
@@ -145,7 +151,7 @@ MYRIAD_FUNCTION error_norm<S> scaled_error(const kernel_arguments<Model, real_of
     const auto scale = detail::scale_of_errors<Method, Model>(args, y, trial.y);
     const auto worst_of = [&](auto row) MYRIAD_LAMBDA {
         constexpr int weights = decltype(row)::value;
-        return team_for<Model>::largest(error_over_tolerance<Method, n_state<whole_of<Model>>>(
+        return team_for<Model>::largest(error_over_tolerance<Method, n_controlled<whole_of<Model>>>(
             scale.of, detail::error_factor<Method, weights>(h),
             [&](int c) MYRIAD_LAMBDA { return detail::error_sum<Method, weights>(trial, c); }));
     };

@@ -31,8 +31,8 @@
 /// A point where diverged threads of a warp reconverge; all threads that have not exited reach it. The compiler's own
 /// reconvergence points are not enough: threads that took instances one by one were seen never to reconverge.
 #define MYRIAD_RECONVERGE __syncwarp()
-/// Unrolls the following loop; in device code only up to 32 iterations, so that large states stay loops.
-#define MYRIAD_UNROLL _Pragma("unroll 32")
+/// Unrolls the following loop; in device code only up to 64 iterations, so that larger states stay loops.
+#define MYRIAD_UNROLL _Pragma("unroll 64")
 /// The same up to another number of iterations, a constant expression.
 #define MYRIAD_UNROLL_UP_TO(count) MYRIAD_PRAGMA(unroll(count))
 #define MYRIAD_PRAGMA(text) _Pragma(#text)
@@ -67,6 +67,7 @@
 #define MYRIAD_RARE_FUNCTION __attribute__((noinline))
 #define MYRIAD_CONSTANT_MEMORY inline constexpr
 #define MYRIAD_OPTIMISATION_BARRIER(value) static_cast<void>(value)
+#define MYRIAD_MEMORY_BARRIER static_cast<void>(0)
 #define MYRIAD_RECONVERGE static_cast<void>(0)
 #define MYRIAD_UNROLL_BY_FOUR
 #define MYRIAD_ROLLED

@@ -30,26 +30,16 @@ struct trigger_conditions {
 
     /// Starts a phase of lane i. In the first, conditions that count as false before it come to hold, if they do.
     MYRIAD_FUNCTION void begin(int i) const {
-        const auto& own = sides.memory_of(i);
-        const vec<R, m> g = detail::evaluate_events<Model>(get_lane(sides.s.now(), i), get_lanes<R>(sides.s.data.y, i),
-                                                           sides.inputs_of(i));
-        MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
-            const bool unknown = own.open[j] && !own.held[j];
-            t.seen.set(j, i, unknown ? !(g[j] < R(0)) : sides.e.above.get(j, i));
-        }
+        look(i);
         const auto now = conditions(i);
         t.holds[i] = now;
         t.pending[i].clear();
         if (get_lane(sides.s.data.phase, i) > 0) return;
         for (int j = 0; j < triggers; ++j) t.pending[i].set(j, now[j] && !holds_before_start(j));
     }
-    /// Looks at the functions of lane i again. One on its surface whose side is not yet known keeps the last.
+    /// Looks at the functions of lane i again.
     MYRIAD_FUNCTION void update(int i) const {
-        const auto& own = sides.memory_of(i);
-        MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j)
-            if (!own.open[j]) t.seen.set(j, i, sides.e.above.get(j, i));
+        look(i);
         const auto now = conditions(i);
         t.pending[i] = t.pending[i] | (now & ~t.holds[i]);
         for (int j = 0; j < triggers; ++j)
@@ -59,10 +49,38 @@ struct trigger_conditions {
     /// The lanes in which a function may have changed sides. In a lane that redoes its step nothing has happened yet.
     MYRIAD_FUNCTION mask_of<S> turned() const {
         const auto& e = sides.e;
-        return sides.s.running() & (e.above ^ t.seen).any_of() & !e.flags[e.locating];
+        return sides.s.running() & ((e.above ^ t.seen).any_of() | e.flags[e.in_question]) & !e.flags[e.locating];
+    }
+    /// Gives functions of lane i that are on their surface the sides to which they go. Returns whether there were any.
+    MYRIAD_FUNCTION bool settle(int i) const {
+        if (!unknown(i).any_of()) return false;
+        auto& s = sides.s;
+        const R now = get_lane(s.now(), i), sense = sign_of(get_lane(s.data.t_end, i) - now);
+        const auto& p = sides.inputs_of(i);
+        const vec<R, m> slope = detail::event_slopes<Model>(now, get_lanes<R>(s.data.y, i), s.slope_of(i), p);
+        bool any = false;
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) {
+            if (!unknown(i)[j] || !(slope[j] > R(0) || slope[j] < R(0))) continue;
+            sides.put_side(j, i, sign_of(slope[j]) * sense);
+            any = true;
+        }
+        sides.update_in_question(i);
+        return any;
     }
 
 private:
+    /// The functions of lane i on their surface, at the start or where a hook put them, whose side is not yet known.
+    MYRIAD_FUNCTION auto unknown(int i) const {
+        const auto& own = sides.memory_of(i);
+        return own.open & ~own.held;
+    }
+    /// Notes which functions of lane i are positive; zero counts as positive.
+    MYRIAD_FUNCTION void look(int i) const {
+        const auto on_surface = unknown(i);
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) t.seen.set(j, i, on_surface[j] || sides.e.above.get(j, i));
+    }
     // Not in lambdas, where nvcc takes every such branch.
     static MYRIAD_FUNCTION bool holds_before_start(int trigger) {
         if constexpr (requires { Model::initial_value(0); }) {

@@ -101,13 +101,14 @@ struct hook_driver {
             if constexpr (has_stops<Model>) act_on_stops();
             const mask turned = events.conditions().turned();
             if (!MYRIAD_UNLIKELY(any(turned))) return;
-            mask acted = mask(false);
+            mask goes_on = mask(false);
             for_each_lane(turned, [&](int i) MYRIAD_LAMBDA {
                 events.conditions().update(i);
-                set_lane(acted, i, act_on_triggers_of(i));
+                const bool acted = act_on_triggers_of(i);
+                set_lane(goes_on, i, acted || events.conditions().settle(i));
             });
-            if (!has_stops<Model> || !any(acted)) return;
-            if (rounds >= args.accumulation_limit) return s.end_lanes(acted, status::event_accumulation);
+            if (!any(goes_on)) return;
+            if (rounds >= args.accumulation_limit) return s.end_lanes(goes_on, status::event_accumulation);
         }
     }
 
@@ -116,6 +117,13 @@ struct hook_driver {
         const stop_driver<Model, Method, S> stops{args, s};
         const mask due = stops.due();
         if (!MYRIAD_UNLIKELY(any(due))) return;
+        if constexpr (has_triggers<Model>) {
+            for_each_lane(due, [&](int i) MYRIAD_LAMBDA {
+                stops.act(i, [&](auto j, std::int32_t number) MYRIAD_LAMBDA { act_on_stop(i, j, number); });
+                lay_steps(i);
+            });
+            return;
+        }
         const lane_data<Model, S> before = s.data;
         for_each_lane(due, [&](int i) MYRIAD_LAMBDA {
             stops.act(i, [&](auto j, std::int32_t number) MYRIAD_LAMBDA {
@@ -164,15 +172,28 @@ private:
             int next = triggers - 1;
             for (int j = triggers - 2; j >= 0; --j) next = pending[j] ? j : next;
             pending.set(next, false);
-            const lane_data<Model, S> before = s.data;
-            run_hook(i, [&](auto& lane) MYRIAD_LAMBDA { return Model::after_trigger(next, lane); });
-            mask one = mask(false);
-            set_lane(one, i, true);
-            follow_action(one & differs(before, s.data), before);
-            events.conditions().update(i);
+            act_and_look(i, [&](auto& lane) MYRIAD_LAMBDA { return Model::after_trigger(next, lane); });
             acted = true;
         }
         return acted;
+    }
+    /// Calls after_stop for a stop of lane i in a model with triggers: what its action brings about comes before the
+    /// next stop.
+    MYRIAD_FUNCTION void act_on_stop(int i, int stop, std::int32_t number) {
+        if constexpr (has_after_stop<Model>) {
+            act_and_look(i, [&](auto& lane) MYRIAD_LAMBDA { return Model::after_stop(stop, number, lane); });
+            act_on_triggers_of(i);
+        }
+    }
+    /// Calls the action of a stop or a trigger of lane i, and looks at its conditions again.
+    template <class Hook>
+    MYRIAD_FUNCTION void act_and_look(int i, const Hook& hook) {
+        const lane_data<Model, S> before = s.data;
+        run_hook(i, hook);
+        mask one = mask(false);
+        set_lane(one, i, true);
+        follow_action(one & differs(before, s.data), before);
+        events.conditions().update(i);
     }
     /// After the action of a stop or a trigger has changed these lanes; `before`: as they were.
     MYRIAD_FUNCTION void follow_action(const mask& changed, const lane_data<Model, S>& before) {

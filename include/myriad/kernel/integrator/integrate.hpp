@@ -50,7 +50,8 @@ struct integrator {
                 if (any(s.ended)) continue;  // by an action before the first step
             }
             if constexpr (runs_freely<Model, Method>) free_run<Model, Method, S>{args, s}.take_steps(source);
-            trial_type trial;
+            trial_storage<Method, Model, S> storage;
+            trial_type& trial = storage.trial();
             propose_step(events);
             take_step(trial);
             detection_type detected;
@@ -136,7 +137,7 @@ struct integrator {
     }
 
     MYRIAD_FUNCTION void take_step(trial_type& trial) {
-        trial.k[0] = s.slopes.first_stage(s.now(), s.data);
+        detail::copy_components(trial.k[0], s.slopes.first_stage(s.now(), s.data));
         detail::take_trial_step<Method, Model>(s.now(), s.h, end_time(), s.data.y, s.data, trial);
     }
 

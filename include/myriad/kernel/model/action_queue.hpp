@@ -41,17 +41,25 @@ struct action_queue {
                 next = p.accessory[first + i];
         return next;
     }
-    /// Puts an action, which runs at `time`, or now if that has passed. Returns whether there was room.
+    /// Puts an action, which runs at `time`, or now if that has passed. Times that differ by less than 1e-10 of
+    /// themselves are one, as rounding is not to decide which action comes first. Returns whether there was room.
     template <class Lane, class R>
     static MYRIAD_FUNCTION bool put(Lane& lane, int action, const R& time, const vec<R, values>& value = {}) {
+        using Real = std::remove_cvref_t<decltype(lane.t)>;
         bool has_room = false;
+        Real when = time > lane.t ? time : lane.t;
+        const Real same = max(Real(1e-10), Real(8) * epsilon_of<Real>) * abs(when);
+        MYRIAD_UNROLL
+        for (int i = 0; i < capacity; ++i)
+            if (lane.integer_accessory[first_integer + i] != 0 && abs(lane.accessory[first + i] - when) < same)
+                when = lane.accessory[first + i];
         MYRIAD_UNROLL
         for (int i = 0; i < capacity; ++i) {
             if (has_room || lane.integer_accessory[first_integer + i] != 0) continue;
             has_room = true;
             lane.integer_accessory[first_integer + i] = action + 1;
             lane.integer_accessory[first_integer + capacity + i] = lane.integer_accessory[counter]++;
-            lane.accessory[first + i] = time > lane.t ? time : lane.t;
+            lane.accessory[first + i] = when;
             MYRIAD_UNROLL
             for (int v = 0; v < values; ++v) lane.accessory[first + capacity * (1 + v) + i] = value[v];
         }

@@ -27,6 +27,8 @@ MYRIAD_ENUMERATED_KINDS(MYRIAD_COUNT_OF_KIND)
 #undef MYRIAD_COUNT_OF_KIND
 /// Number of states, the last ones, that event functions do not read (`with_tangents`).
 MYRIAD_MODEL_COUNT(n_tangent)
+/// Number of states, the last ones, whose errors have no part in choosing the steps.
+MYRIAD_MODEL_COUNT(n_uncontrolled)
 // Of one unit, in a model of coupled units, and what units publish for each other.
 #define MYRIAD_COUNT_OF_UNIT(kind, ...) MYRIAD_MODEL_COUNT(n_unit_##kind)
 MYRIAD_COMPONENT_KINDS(MYRIAD_COUNT_OF_UNIT)
@@ -36,6 +38,9 @@ MYRIAD_MODEL_COUNT(n_publication)
 /// Number of coupled units; zero of a model that is written as a whole.
 MYRIAD_MODEL_COUNT(n_unit)
 #undef MYRIAD_MODEL_COUNT
+/// Number of states, the first ones, whose errors choose the steps.
+template <class Model>
+inline constexpr int n_controlled = n_state<Model> - n_uncontrolled<Model>;
 
 // Enumerations: `enum state { ..., n_state };`, or an unnamed one, recognised by its count. enumerates_<kind>: whether
 // E is the model's enumeration of such components. counts_<kind>: false if the model has the enumeration but not the

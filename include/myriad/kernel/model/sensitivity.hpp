@@ -180,4 +180,11 @@ private:
     }
 };
 
+/// The same, but the errors of the derivatives have no part in choosing the steps, which are those of Model alone:
+/// cheaper, with derivatives about as accurate as these steps allow.
+template <class Model, auto... wrt>
+struct uncontrolled_sensitivities : with_sensitivities<Model, wrt...> {
+    static constexpr int n_uncontrolled = with_sensitivities<Model, wrt...>::n_tangent;  ///< the derivatives
+};
+
 }  // namespace myriad

@@ -94,6 +94,15 @@ MYRIAD_FUNCTION vec<S, n> derivatives(const vec<dual<S>, n>& v) {
     return out;
 }
 
+/// The derivatives of an input by itself: one in the direction of that component, known to be zero in all others.
+template <class Directions, class S>
+MYRIAD_FUNCTION partials<S, Directions::count> unit_derivatives(moving kind, int number) {
+    return partials<S, Directions::count>::each([&](auto i) MYRIAD_LAMBDA {
+        constexpr moving_component its = Directions::template at<i.value>;
+        return its.kind == kind && its.number == number ? partial<S>(S(real_of<S>(1))) : partial<S>::none();
+    });
+}
+
 /// The inputs of Model, taken from the inputs of a model W that has additional accessories.
 template <class Model, class W, class S>
 MYRIAD_FUNCTION inputs<Model, S> inputs_in(const lane<W, S>& l) {
@@ -157,6 +166,47 @@ MYRIAD_FUNCTION decltype(auto) inputs_along(const From& from) {
         p.shared_integer = from.shared_integer.values;
         return p;
     }
+}
+
+/// Numbers with derivatives in all directions.
+template <class Directions, class S>
+using moving_number = dual<S, partials<S, Directions::count>>;
+
+/// Shared values with their derivatives in all directions; tables among them are constants.
+template <class Model, class Directions, class S>
+struct all_moving_shared {
+    shared_values<Model, real_of<S>> all;
+
+    MYRIAD_FUNCTION operator const real_of<S>*() const { return all; }
+    template <class I>
+    MYRIAD_FUNCTION moving_number<Directions, S> operator[](I i) const {
+        return {S(all[i]), detail::unit_derivatives<Directions, S>(moving::shared, static_cast<int>(i))};
+    }
+};
+template <class Model, class Directions, class S>
+struct all_moving_inputs : inputs<Model, moving_number<Directions, S>> {
+    all_moving_shared<Model, Directions, S> shared;
+};
+
+/// The inputs of Model with their derivatives in all directions.
+template <class Model, class Directions, class S>
+MYRIAD_FUNCTION auto inputs_along_all(const auto& from) {
+    using number = moving_number<Directions, S>;
+    all_moving_inputs<Model, Directions, S> p;
+    static_for<0, n_parameter<Model>>([&](auto c) MYRIAD_LAMBDA {
+        p.parameter[c] = number(from.parameter[c], detail::unit_derivatives<Directions, S>(moving::parameter, c));
+    });
+    if constexpr (!accessories_are_outputs<Model>) {
+        static_for<0, n_accessory<Model>>([&](auto c) MYRIAD_LAMBDA {
+            p.accessory[c] = number(from.accessory[c], partials<S, Directions::count>::each([&](auto i) MYRIAD_LAMBDA {
+                                        return partial<S>(from.accessory[detail::first_moving_accessory<Model>(i) + c]);
+                                    }));
+        });
+        p.integer_accessory = from.integer_accessory;
+    }
+    static_cast<inputs<Model, number>&>(p).shared = p.shared.all = from.shared.values;
+    p.shared_integer = from.shared_integer.values;
+    return p;
 }
 
 /// The lane of Model alone, in dual numbers: its state has the given direction as derivative, its time has dt, and

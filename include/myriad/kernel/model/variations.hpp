@@ -203,15 +203,31 @@ private:
     MYRIAD_FUNCTION static vec<R, n_state> slopes(const auto& t, const vec<R, n_state>& y, const auto& p,
                                                   std::integer_sequence<int, c...>, std::integer_sequence<int, i...>,
                                                   std::integer_sequence<int, all...>) {
-        const auto along_direction = [&](auto k) MYRIAD_LAMBDA {
-            constexpr int first = n_original * (1 + decltype(k)::value);
-            return Model::template rhs<dual<R>>(t, vec<dual<R>, n_original>{dual<R>(y[c], y[first + c])...},
-                                                detail::inputs_along<Model, Directions, decltype(k)::value, R>(p));
-        };
-        const vec<dual<R>, n_original> f[Directions::count] = {along_direction(constant_index<i>{})...};
-        return vec<R, n_state>{(all < n_original
-                                    ? f[0][all % n_original].value
-                                    : f[all / n_original - (all >= n_original)][all % n_original].derivative)...};
+        if constexpr (Directions::carries_accessories) {  // all at once, as most inputs move in none or one of them
+            using number = moving_number<Directions, R>;
+            const auto moving = [&](auto k) MYRIAD_LAMBDA {
+                return number(y[k], partials<R, Directions::count>::each([&](auto d) MYRIAD_LAMBDA {
+                    return partial<R>(y[n_original * (1 + d) + k]);
+                }));
+            };
+            const vec<number, n_original> f =
+                Model::template rhs<number>(t, vec<number, n_original>{moving(constant_index<c>{})...},
+                                            detail::inputs_along_all<Model, Directions, R>(p));
+            return vec<R, n_state>{
+                (all < n_original
+                     ? f[all % n_original].value
+                     : f[all % n_original].derivative.in[all / n_original - (all >= n_original)].value)...};
+        } else {
+            const auto along_direction = [&](auto k) MYRIAD_LAMBDA {
+                constexpr int first = n_original * (1 + decltype(k)::value);
+                return Model::template rhs<dual<R>>(t, vec<dual<R>, n_original>{dual<R>(y[c], y[first + c])...},
+                                                    detail::inputs_along<Model, Directions, decltype(k)::value, R>(p));
+            };
+            const vec<dual<R>, n_original> f[Directions::count] = {along_direction(constant_index<i>{})...};
+            return vec<R, n_state>{(all < n_original
+                                        ? f[0][all % n_original].value
+                                        : f[all / n_original - (all >= n_original)][all % n_original].derivative)...};
+        }
     }
 };
 

@@ -15,7 +15,7 @@ namespace myriad::inline MYRIAD_TARGET {
 
 /// value + derivative * e with e * e = 0; S is double, float or a pack, or itself dual, which gives second derivatives.
 /// Mixes with S and with what S mixes with, which are constants. Comparisons use only the values. The derivative is
-/// another S, or a `partial<S>`.
+/// another S, a `partial<S>`, or several, `partials<S, count>`.
 template <class S, class Derivative = S>
 struct dual {
     using value_type = real_of<S>;
@@ -170,7 +170,7 @@ requires detail::with_dual<A, B> MYRIAD_FUNCTION auto operator*(const A& a, cons
     } else if constexpr (detail::is_constant_beside<A, B>) {
         return D(u * v, u * b.derivative);
     } else {
-        return D(u * v, a.derivative * v + u * b.derivative);
+        return D(u * v, detail::product_rule(u, a.derivative, v, b.derivative));
     }
 }
 
@@ -309,9 +309,8 @@ struct functions<dual<S, Derivative>> {
     static MYRIAD_FUNCTION D pow(const D& x, const D& y) {
         const D of_base = pow_of_base(x, y.value);
         // With a constant exponent, the logarithm of a non-positive base must not spoil the result.
-        const auto of_exponent = of_base.value * f::log(x.value) * y.derivative;
         return D(of_base.value,
-                 of_base.derivative + select(y.derivative == constant(real(0)), y.derivative, of_exponent));
+                 of_base.derivative + scaled_unless_zero(of_base.value * f::log(x.value), y.derivative));
     }
     static MYRIAD_FUNCTION D atan2(const D& y, const D& x) {
         const S square = x.value * x.value + y.value * y.value;
@@ -341,7 +340,9 @@ struct functions<dual<S, Derivative>> {
         return D(f::fma(a.value, b.value, c.value),
                  add_product(a.derivative, b.value, add_product(a.value, b.derivative, c.derivative)));
     }
-    static MYRIAD_FUNCTION auto is_finite(const D& x) { return f::is_finite(x.value) && f::is_finite(x.derivative); }
+    static MYRIAD_FUNCTION auto is_finite(const D& x) {
+        return f::is_finite(x.value) && derivative_is_finite(x.derivative);
+    }
 
 private:
     static constexpr real pi = real(3.14159265358979323846L);

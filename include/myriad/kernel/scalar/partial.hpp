@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
-// A derivative that knows whether it is always zero: in a Jacobian by groups of columns most are, and a compiler may
-// not leave out 0 * x + y by itself, as x could be infinite.
+// Derivatives that know whether they are always zero, one or several at once: in a Jacobian by groups of columns most
+// are, and those by a parameter of all the others; a compiler may not leave out 0 * x + y by itself, as x could be
+// infinite.
 #pragma once
 
+#include <utility>
+
+#include "myriad/kernel/core/static_for.hpp"
 #include "myriad/kernel/core/macros.hpp"
 #include "myriad/kernel/scalar/math.hpp"
 
@@ -46,6 +50,47 @@ struct partial {
     }
 };
 
+/// The derivatives of a dual number in several directions, each a `partial`. What all directions share, such as the
+/// value and the slope of a function, is computed once.
+template <class S, int count>
+struct partials {
+    partial<S> in[count];
+
+    /// The derivatives `of(constant_index<i>{})`.
+    template <class F>
+    static MYRIAD_FUNCTION partials each(F&& of) {
+        return [&]<int... i>(std::integer_sequence<int, i...>) MYRIAD_LAMBDA {
+            return partials{{of(constant_index<i>{})...}};
+        }
+        (std::make_integer_sequence<int, count>{});
+    }
+
+    friend MYRIAD_FUNCTION partials operator-(const partials& a) {
+        return each([&](auto i) MYRIAD_LAMBDA { return -a.in[i]; });
+    }
+    friend MYRIAD_FUNCTION partials operator+(const partials& a, const partials& b) {
+        return each([&](auto i) MYRIAD_LAMBDA { return a.in[i] + b.in[i]; });
+    }
+    friend MYRIAD_FUNCTION partials operator-(const partials& a, const partials& b) {
+        return each([&](auto i) MYRIAD_LAMBDA { return a.in[i] - b.in[i]; });
+    }
+    friend MYRIAD_FUNCTION partials operator*(const partials& a, const S& b) {
+        return each([&](auto i) MYRIAD_LAMBDA { return a.in[i] * b; });
+    }
+    friend MYRIAD_FUNCTION partials operator*(const S& a, const partials& b) { return b * a; }
+    /// By the reciprocal, which all directions share.
+    friend MYRIAD_FUNCTION partials operator/(const partials& a, const S& b) { return a * functions<S>::reciprocal(b); }
+    friend MYRIAD_FUNCTION partials select(const mask_of<S>& first, const partials& a, const partials& b) {
+        return each([&](auto i) MYRIAD_LAMBDA { return select(first, a.in[i], b.in[i]); });
+    }
+    friend MYRIAD_FUNCTION partials add_product(const partials& a, const S& b, const partials& c) {
+        return each([&](auto i) MYRIAD_LAMBDA { return add_product(a.in[i], b, c.in[i]); });
+    }
+    friend MYRIAD_FUNCTION partials add_product(const S& a, const partials& b, const partials& c) {
+        return add_product(b, a, c);
+    }
+};
+
 /// The derivative of a constant.
 template <class Derivative>
 struct derivative_of_constant {
@@ -55,6 +100,55 @@ template <class S>
 struct derivative_of_constant<partial<S>> {
     static MYRIAD_FUNCTION partial<S> get() { return partial<S>::none(); }
 };
+
+template <class S, int count>
+struct derivative_of_constant<partials<S, count>> {
+    static MYRIAD_FUNCTION partials<S, count> get() {
+        return partials<S, count>::each([](auto) MYRIAD_LAMBDA { return partial<S>::none(); });
+    }
+};
+
+/// The derivative of a product.
+template <class S, class Derivative>
+MYRIAD_FUNCTION Derivative product_rule(const S& u, const Derivative& du, const S& v, const Derivative& dv) {
+    return du * v + u * dv;
+}
+template <class S, int count>
+MYRIAD_FUNCTION partials<S, count> product_rule(const S& u, const partials<S, count>& du, const S& v,
+                                                const partials<S, count>& dv) {
+    return add_product(du, v, u * dv);
+}
+
+/// Whether derivatives are finite.
+template <class S>
+MYRIAD_FUNCTION auto derivative_is_finite(const S& d) {
+    return functions<S>::is_finite(d);
+}
+template <class S>
+MYRIAD_FUNCTION auto derivative_is_finite(const partial<S>& d) {
+    return functions<S>::is_finite(d.value);
+}
+template <class S, int count>
+MYRIAD_FUNCTION auto derivative_is_finite(const partials<S, count>& d) {
+    auto finite = functions<S>::is_finite(d.in[0].value);
+    MYRIAD_UNROLL
+    for (int i = 1; i < count; ++i) finite = finite & functions<S>::is_finite(d.in[i].value);
+    return finite;
+}
+
+/// factor * d, but zero where d is, even if the factor is not finite.
+template <class S>
+MYRIAD_FUNCTION S scaled_unless_zero(const S& factor, const S& d) {
+    return select(d == S(real_of<S>(0)), d, factor * d);
+}
+template <class S>
+MYRIAD_FUNCTION partial<S> scaled_unless_zero(const S& factor, const partial<S>& d) {
+    return d.zero ? d : partial<S>(detail::scaled_unless_zero(factor, d.value));
+}
+template <class S, int count>
+MYRIAD_FUNCTION partials<S, count> scaled_unless_zero(const S& factor, const partials<S, count>& d) {
+    return partials<S, count>::each([&](auto i) MYRIAD_LAMBDA { return detail::scaled_unless_zero(factor, d.in[i]); });
+}
 
 /// a b + c
 template <class S>

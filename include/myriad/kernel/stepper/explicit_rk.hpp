@@ -168,6 +168,17 @@ MYRIAD_FUNCTION S error_sum(const trial_step<Method, S, n>& trial, int component
     return detail::scaled_sum<Method, row>(trial.k, component);
 }
 
+/// to = from. Component by component in large packs: g++ copied those through memory, by string instructions.
+template <class S, int n>
+MYRIAD_FUNCTION void copy_components(vec<S, n>& to, const vec<S, n>& from) {
+    if constexpr (lanes_of < S >> 1 && sizeof(to) > 1024) {
+        MYRIAD_UNROLL
+        for (int c = 0; c < n; ++c) to[c] = from[c];
+    } else {
+        to = from;
+    }
+}
+
 /// Whether a stage's slope enters neither the new state nor an error estimate.
 template <class Method, int stage>
 inline constexpr bool is_unseen_stage = [] {
@@ -188,8 +199,9 @@ MYRIAD_FUNCTION void see_stage_before(vec<vec<S, n>, Method::stages>& k) {
 
 /// Steps from (t, y) over h to t1; `trial.k[0]`, the slope at the start, is given. A last stage that is the first of
 /// the next step is evaluated at t1, which may differ from t + h by rounding. The new state is summed stage by stage,
-/// so that slopes no later stage needs free their registers.
-template <class Method, class Model, class S>
+/// so that slopes no later stage needs free their registers. Where the trial step lies `in_memory`, nvcc must not carry
+/// slopes to later stages in registers, which it would spill.
+template <class Method, class Model, bool in_memory = false, class S>
 MYRIAD_FUNCTION void explicit_rk_step(const S& t, const S& h, const S& t1, const vec<S, n_state<Model>>& y,
                                       const inputs<Model, S>& p, trial_step<Method, S, n_state<Model>>& trial) {
     using R = real_of<S>;
@@ -212,13 +224,15 @@ MYRIAD_FUNCTION void explicit_rk_step(const S& t, const S& h, const S& t1, const
         constexpr int stage = decltype(i)::value;
         const auto argument = detail::combine<Method, stage>(y, h, trial.k);
         if constexpr (Method::first_same_as_last && stage == last - 1) {
-            trial.y = argument;
-            trial.k[stage] = detail::evaluate_rhs<Model>(t1, argument, p);
+            detail::copy_components(trial.y, argument);
+            detail::copy_components(trial.k[stage], detail::evaluate_rhs<Model>(t1, argument, p));
         } else {
-            trial.k[stage] =
-                detail::evaluate_rhs<Model>(fma(S(detail::node_operand<Method, stage, R>()), h, t), argument, p);
+            detail::copy_components(trial.k[stage],
+                                    detail::evaluate_rhs<Model>(
+                                        fma(S(detail::node_operand<Method, stage, R>()), h, t), argument, p));
         }
         detail::see_stage_before<Method, stage>(trial.k);
+        if constexpr (in_memory) MYRIAD_MEMORY_BARRIER;
         if constexpr (!Method::first_same_as_last) add_stage(i);
     });
     if constexpr (!Method::first_same_as_last) {

@@ -22,10 +22,10 @@ concept rosenbrock_method = requires {
 };
 
 /// Components up to which device code writes out the loops over a state. Beside factors that are written out, a loop
-/// over more than the usual 32 keeps a copy of every vector in local memory: a ring of 64 states took 14.1 kB a thread
+/// keeps a copy of every vector in local memory: a ring of 64 states took 14.1 kB a thread
 /// and 119 ms for 1000 instances, and written out 9.4 kB and 87 ms (NVIDIA H200, rodas_5p).
 template <class Method>
-inline constexpr int most_components_written_out = rosenbrock_method<Method> ? 128 : 32;
+inline constexpr int most_components_written_out = rosenbrock_method<Method> ? 128 : 64;
 
 /// The results of a trial step: the slope at its start (and at its end, if the last stage computes it), the stages u,
 /// the new state, and the lanes whose matrix was singular, where everything else is invalid.

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Where a Rosenbrock step whose stages are a loop keeps its stages and its factors: with the thread's own variables, or
-// in the shared memory of its block.
+// Where a step keeps what is too large for a thread's registers: with the thread's own variables, or in the shared
+// memory of its block. Of explicit methods that is the trial step, of Rosenbrock methods, whose stages are a loop then,
+// the stages and the factors.
 #pragma once
 
+#include "myriad/kernel/core/team.hpp"
 #include "myriad/kernel/stepper/rosenbrock.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
@@ -53,9 +55,14 @@ struct step_memory : stage_memory<Method, Model, R> {
 /// bank.
 template <class Memory, class R>
 inline constexpr int step_memory_stride = static_cast<int>((sizeof(Memory) / sizeof(R) | 1) * sizeof(R));
-/// Largest such stride. 1000 rings of 64 states, NVIDIA H100: 63 ms with all 7.5 kB of a thread there, 34 with the stages
-/// alone, 4.6 kB, and 55 without.
+/// Largest such stride. 1000 rings of 64 states, NVIDIA H100: 63 ms with all 7.5 kB of a thread there, 34 with the
+/// stages alone, 4.6 kB, and 55 without.
 inline constexpr int largest_step_memory_stride = 4800;
+
+/// Largest trial step of an explicit method that is left to registers, and what of it they do not hold to local memory.
+/// Lorenz 96, dormand_prince_5 at 1e-6, 131 072 instances, NVIDIA H100, ms in registers and in shared memory, for 16
+/// states (1024 bytes) 0.68 and 1.6, 20 (1280) 0.87 and 1.9, 24 (1536) 2.1 and 2.5, 32 (2048) 17 and 4.6.
+inline constexpr int largest_trial_in_registers = 1600;
 
 template <class Method, class Model, class R>
 constexpr int shared_step_bytes_of() {
@@ -69,22 +76,26 @@ constexpr int shared_step_bytes_of() {
             if (all <= largest_step_memory_stride) return all;
             if (stages <= largest_step_memory_stride) return stages;
         }
+    } else if constexpr (Method::embedded_order > 0 && team_size<Model> == 1) {
+        constexpr int trial = step_memory_stride<trial_step<Method, R, n_state<Model>>, R>;
+        if (trial > largest_trial_in_registers && trial <= largest_step_memory_stride) return trial;
     }
 #endif
     return 0;
 }
-/// Bytes of shared memory that a thread's steps take; zero if they take none: on CPUs, if registers hold the factors
-/// beside the vectors of a solve, and beyond the largest stride. Local memory has room for 32 threads a warp, however
-/// many run, and it is the cache's choice what stays; shared memory has room for those that run, and no more threads
-/// run at a time than it has room for. docs/numerics.md has what that gains.
+/// Bytes of shared memory that a thread's steps take; zero if they take none: on CPUs, in teams, whose threads share
+/// the state out, with fixed steps of explicit methods, if registers hold the trial step, or the factors beside the
+/// vectors of a solve, and beyond the largest stride. Local memory has room for 32 threads a warp, however many run,
+/// and it is the cache's choice what stays; shared memory has room for those that run, and no more threads run at a
+/// time than it has room for. docs/numerics.md has what that gains.
 template <class Method, class Model, class R>
 inline constexpr int shared_step_bytes = shared_step_bytes_of<Method, Model, R>();
 
 #if defined(__CUDACC__)
 /// Whether the factors lie there, too.
 template <class Method, class Model, class R>
-inline constexpr bool shares_factors = shared_step_bytes<Method, Model, R> ==
-                                       step_memory_stride<step_memory<Method, Model, R>, R>;
+inline constexpr bool shares_factors =
+    shared_step_bytes<Method, Model, R> == step_memory_stride<step_memory<Method, Model, R>, R>;
 
 /// This thread's, the first in the block's shared memory.
 template <class Memory, int bytes_of_thread>
@@ -97,6 +108,21 @@ __host__ __device__ __forceinline__ Memory& step_memory_of_thread() {
     return *static_cast<Memory*>(nullptr);  // never called
 #endif
 }
+#endif
+
+/// Where the loop's trial step is.
+template <class Method, class Model, class S>
+struct trial_storage {
+    trial_step<Method, S, n_state<Model>> own;
+    MYRIAD_FUNCTION trial_step<Method, S, n_state<Model>>& trial() { return own; }
+};
+#if defined(__CUDACC__)
+template <class Method, class Model, class S>
+requires(!rosenbrock_method<Method> && shared_step_bytes<Method, Model, S> > 0) struct trial_storage<Method, Model, S> {
+    MYRIAD_FUNCTION trial_step<Method, S, n_state<Model>>& trial() {
+        return step_memory_of_thread<trial_step<Method, S, n_state<Model>>, shared_step_bytes<Method, Model, S>>();
+    }
+};
 #endif
 
 /// Stages in the trial step, factors in variables.

@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: MIT
+"""A model as a function of some of its components, for one set of values or many: for optimisers, samplers, and, by
+`to_jax` and `to_torch`, for automatic differentiation."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import kinds
+from .components import Components, by_component, unknown
+from .device import is_on_gpu
+from .errors import Error
+from .expression import Node
+from .inputs import by_name, whole
+from .solve import solve
+from .statuses import first_failure
+from .symbols import time as time_symbol
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from .hints import AnyModel, Array, ByComponent, Component, SomeComponents, Values
+    from .run import Run
+
+__all__ = ["Batched", "batched"]
+
+
+def _listed(chosen: SomeComponents) -> list[Any]:
+    return [chosen] if isinstance(chosen, (str, Node)) else list(chosen)
+
+
+class Batched:
+    """A function of values of the components `by`, in the last axis of its argument, whose other axes are those of a
+    batch: all of it is integrated by one call of `solve`. The result has the axes of the batch, one of the samples, if
+    any were asked for, and one of the quantities `of`. It is NaN for instances that have failed."""
+
+    def __init__(self, model: AnyModel, by: SomeComponents, of: SomeComponents, sweep: ByComponent | None,
+                 start: ByComponent | None, options: Mapping[str, Any]) -> None:
+        components = Components(model)
+        self.model = model
+        self.by = [components.component(one) for one in _listed(by)]  #: names of the components that vary
+        self.of: list[Component] = [one if one is time_symbol else components.component(one) for one in _listed(of)]
+        possible = components.of(("state", "parameter"))
+        for name in self.by:
+            if components.place.get(name, ("",))[0] in kinds.shared:
+                raise Error(f"'{name}' is shared by all instances, and in a batch each has its own value: make it a "
+                            "parameter of the model")
+            if name not in possible:
+                raise unknown(name, possible, "component that a function can depend on")
+        if len(set(self.by)) < len(self.by) or not self.by or not self.of:
+            raise Error(f"by= names {self.by!r} and of= {self.of!r}: name at least one component each, none twice in "
+                        "by=")
+        results = [*components.states, *components.of(("accessory",)), *components.outputs]
+        for one in self.of:
+            if one is not time_symbol and one not in results:
+                raise unknown(str(one), results, "state, accessory or output that can be a result")
+        given = {"sweep": by_component(by_name(sweep, "sweep", "sweep={B: 0.3}"), "sweep="),
+                 "start": by_component(by_name(start, "start", "start={x: 1}"), "start=")}
+        for where, values in given.items():
+            for name, value in values.items():
+                if components.component(name) in self.by:
+                    raise Error(f"'{name}' is in by= and has a value in {where}=: give it in by= alone")
+                if np.ndim(value) != 0:
+                    raise Error(f"'{name}' has several values in {where}=: what is not in by= has one value")
+        for name in ("record", "sensitivities", "size"):
+            if name in options:
+                raise Error(f"a batched function chooses {name}= itself: leave it out")
+        self._initial = [name for name in self.by if name in components.states]
+        #: whether all results are states, which a GPU can keep
+        self.gives_states_alone = all(one is not time_symbol and one in components.states for one in self.of)
+        self._derived = {f"{c}_by_{k}" for c in components.states for k in self.by}
+        self._sweep, self._start, self._options = given["sweep"], given["start"], dict(options)
+        samples = options.get("samples")
+        self.n_samples = None if samples is None else self._count(samples)  #: None without samples
+        if self.n_samples is not None and any(one is time_symbol for one in self.of):
+            raise Error("of= has the time at which the last phase ended, which has no samples: leave out samples=")
+
+    @staticmethod
+    def _count(samples: Any) -> int:
+        if isinstance(samples, Mapping):
+            raise Error("samples= of a batched function is a number of evenly spaced times, or an array of times")
+        return whole(samples, "samples", 1 << 40) if np.ndim(samples) == 0 else len(samples)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The shape of the result for one set of values."""
+        return (len(self.of),) if self.n_samples is None else (self.n_samples, len(self.of))
+
+    def run(self, values: Any, sensitivities: bool = False) -> Run:
+        """The run of sets of values in the rows of an array, of NumPy's or on a GPU."""
+        given = {name: values[:, i] if isinstance(values, np.ndarray) else _contiguous(values[:, i])
+                 for i, name in enumerate(self.by)}
+        options = self._options
+        if not sensitivities:
+            options = {key: self._of_states(value) if key in ("rtol", "atol") else value
+                       for key, value in options.items() if key != "sensitivity_control"}
+        sweep = {**self._sweep, **{name: value for name, value in given.items() if name not in self._initial}}
+        return solve(self.model, sweep, start={**self._start, **{name: given[name] for name in self._initial}},
+                     sensitivities=self.by if sensitivities else None, **options)
+
+    def _of_states(self, tolerance: Any) -> Any:
+        if not hasattr(tolerance, "items"):
+            return tolerance
+        return {name: value for name, value in tolerance.items() if name not in self._derived}
+
+    def _rows(self, values: Values) -> tuple[Array, tuple[int, ...]]:
+        array = np.asarray(values)
+        if array.ndim == 0 or array.shape[-1] != len(self.by):
+            raise Error(f"the argument has the shape {array.shape}: its last axis has the values of "
+                        f"{', '.join(self.by)}, {len(self.by)} in number")
+        if array.dtype.kind not in "fiu":
+            raise Error(f"the argument has the type {array.dtype}: give real numbers")
+        return np.ascontiguousarray(array.reshape(-1, len(self.by)), dtype=float), array.shape[:-1]
+
+    def _values(self, run: Run, batch: tuple[int, ...]) -> Array:
+        found = np.stack([run.t if one is time_symbol else run[one] for one in self.of], axis=-1)
+        found[run.status >= first_failure] = np.nan
+        return found.reshape(*batch, *self.shape)
+
+    def __call__(self, values: Values) -> Array:
+        """The results for one set of values, or for those of a batch."""
+        rows, batch = self._rows(values)
+        return self._values(self.run(rows), batch)
+
+    def with_jacobian(self, values: Values) -> tuple[Array, Array]:
+        """The results, and their derivatives by the values, along one more axis behind those of the results. What has
+        no derivative is NaN."""
+        rows, batch = self._rows(values)
+        run = self.run(rows, sensitivities=True)
+        slopes = np.stack([run.sensitivity[one] for one in self.of], axis=-2)
+        slopes[run.status >= first_failure] = np.nan
+        return self._values(run, batch), slopes.reshape(*batch, *self.shape, len(self.by))
+
+    def to_jax(self) -> Callable[[Any], Any]:
+        """The function for JAX arrays, under `jit`, `vmap`, `grad`, `jvp` and `vjp`; a batch by `vmap` is one call of
+        `solve`. The derivatives are along the solution, with its tolerances; there are no second ones. Results have the
+        type of the argument: double precision needs `jax.config.update("jax_enable_x64", True)`. Needs the package
+        jax. Arrays on a GPU go by the host."""
+        from .jax_function import jax_function
+
+        return jax_function(self)
+
+    def to_torch(self) -> Callable[[Any], Any]:
+        """The function for PyTorch tensors, which `backward`, `torch.func.grad`, `jacrev` and `vmap` take; a batch is
+        one call of `solve`. There are no second derivatives. Tensors on the GPU that integrates stay there. Needs the
+        package torch."""
+        from .torch_function import torch_function
+
+        return torch_function(self)
+
+    def __repr__(self) -> str:
+        return f"<myriad.Batched of {self.model!r} by {', '.join(self.by)}>"
+
+
+def _contiguous(column: Any) -> Any:
+    return column.contiguous() if is_on_gpu(column) and hasattr(column, "contiguous") else column
+
+
+def batched(model: AnyModel, *, by: SomeComponents, of: SomeComponents, sweep: ByComponent | None = None,
+            start: ByComponent | None = None, **options: Any) -> Batched:
+    """The model as a function of values of some components, in arrays.
+
+    by        the components that vary, parameters and initial states: the last axis of the argument
+    of        states, accessories, outputs, or `myriad.time` for the time at which the last phase ended: the last axis
+              of the result
+    sweep     the other parameters and shared values, one number each
+    start     the other initial states, one number each
+    options   of `solve`, as time=, samples=, method=, rtol=, device=, sensitivity_control=
+
+    The argument has any number of axes before the last, all of which are integrated at once."""
+    return Batched(model, by, of, sweep, start, options)

@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: MIT
+"""Models as functions of arrays, and in JAX and PyTorch, compared with closed forms."""
+
+import numpy as np
+import pytest
+
+import myriad as my
+
+x, v = my.states("x v")
+k, B = my.parameters("k B")
+spring = my.model({x: v, v: B - k * x}, name="spring")
+times = np.array([0.5, 1.0, 2.0])
+tight = {"rtol": 1e-10, "atol": 1e-10}
+sets = np.array([[1.0, 1.0], [2.0, 0.5], [3.0, -1.0]])  # of k and x(0)
+
+
+def closed_form(theta, t):
+    k, x0 = theta[..., 0, None], theta[..., 1, None]
+    return (x0 - 0.5 / k) * np.cos(np.sqrt(k) * t) + 0.5 / k
+
+
+def closed_slopes(theta, t):
+    k, x0 = theta[..., 0, None], theta[..., 1, None]
+    w = np.sqrt(k)
+    by_k = 0.5 / k**2 * (np.cos(w * t) - 1) - (x0 - 0.5 / k) * np.sin(w * t) * t / (2 * w)
+    return np.stack([by_k, np.cos(w * t)], axis=-1)
+
+
+@pytest.fixture(scope="module")
+def position():
+    return my.batched(spring, by=[k, x], of=x, sweep={B: 0.5}, start={v: 0}, time=(0, 2), samples=times, **tight)
+
+
+@pytest.fixture
+def launches(monkeypatch):
+    """The numbers of instances of the calls of `solve`."""
+    sizes = []
+
+    def counted(*arguments, **options):
+        run = my.solve(*arguments, **options)
+        sizes.append(run.size)
+        return run
+
+    monkeypatch.setattr("myriad.function.solve", counted)
+    return sizes
+
+
+def test_a_batch_of_any_shape_is_one_ensemble(position, launches):
+    np.testing.assert_allclose(position(sets)[..., 0], closed_form(sets, times), rtol=1e-7, atol=1e-9)
+    assert position(sets[0]).shape == (3, 1)
+    assert position(np.broadcast_to(sets, (4, 3, 2))).shape == (4, 3, 3, 1)
+    assert launches == [3, 1, 12]
+
+
+def test_a_batch_has_the_derivatives_of_its_closed_form(position):
+    values, slopes = position.with_jacobian(sets)
+    np.testing.assert_allclose(values[..., 0], closed_form(sets, times), rtol=1e-7, atol=1e-9)
+    np.testing.assert_allclose(slopes[..., 0, :], closed_slopes(sets, times), rtol=1e-7, atol=1e-9)
+
+
+def test_instances_that_failed_are_nan():
+    bursting = my.batched(my.model({x: k * x * x}, name="bursting"), by=[k], of=[x, my.time], start={x: 1.0},
+                          time=(0, 2), max_steps=1000)
+    values, slopes = bursting.with_jacobian([[0.1], [1.0]])
+    np.testing.assert_allclose(values[0], [1 / 0.8, 2], rtol=1e-6)
+    np.testing.assert_allclose(slopes[0, :, 0], [2 / 0.8**2, 0], rtol=1e-5)
+    assert np.isnan(values[1]).all() and np.isnan(slopes[1]).all()
+
+
+@pytest.mark.parametrize("arguments, message", [
+    (dict(by=[k, x], of=x, sweep={B: 0.5, k: 1}), "'k' is in by= and has a value in sweep="),
+    (dict(by=[k, k], of=x), "name at least one component each"),
+    (dict(by=["q"], of=x), "'q' is no component that a function can depend on"),
+    (dict(by=[k], of=["q"]), "'q' is no state, accessory or output"),
+    (dict(by=[k], of=x, size=3), "chooses size= itself"),
+    (dict(by=[k], of=my.time, samples=3), "leave out samples="),
+])
+def test_wrong_functions_are_refused(arguments, message):
+    with pytest.raises(my.Error, match=message):
+        my.batched(spring, time=(0, 1), **arguments)
+
+
+def test_arguments_of_wrong_shapes_are_refused(position):
+    with pytest.raises(my.Error, match=r"the argument has the shape \(3,\): its last axis has the values of k, x"):
+        position([1.0, 2.0, 3.0])
+
+
+@pytest.fixture(scope="module")
+def jax():
+    jax = pytest.importorskip("jax")
+    jax.config.update("jax_enable_x64", True)
+    return jax
+
+
+def test_jax_takes_gradients_of_a_batch_in_one_launch(jax, position, launches):
+    f = position.to_jax()
+    loss = jax.jit(lambda theta: (f(theta) ** 2).sum())
+    expected = 2 * np.einsum("bt,bti->bi", closed_form(sets, times), closed_slopes(sets, times))
+    np.testing.assert_allclose(jax.vmap(jax.grad(loss))(sets), expected, rtol=1e-6, atol=1e-8)
+    assert launches == [3]
+    np.testing.assert_allclose(jax.grad(lambda all: jax.vmap(loss)(all).sum())(sets), expected, rtol=1e-6, atol=1e-8)
+    np.testing.assert_allclose(jax.vmap(jax.vmap(loss))(np.stack([sets, sets]))[1],
+                               (closed_form(sets, times) ** 2).sum(axis=1), rtol=1e-7)
+    assert launches == [3, 3, 6]
+
+
+def test_jax_has_forward_and_reverse_derivatives(jax, position):
+    f, at = position.to_jax(), sets[1]
+    expected = closed_slopes(sets, times)[1]
+    for jacobian in (jax.jacfwd(f), jax.jacrev(f), jax.jit(jax.jacrev(f))):
+        np.testing.assert_allclose(jacobian(at)[:, 0], expected, rtol=1e-7, atol=1e-9)
+    values, moved = jax.jvp(f, (at,), (np.array([1.0, -2.0]),))
+    np.testing.assert_allclose(moved[:, 0], expected @ [1, -2], rtol=1e-7, atol=1e-9)
+    np.testing.assert_allclose(values[:, 0], closed_form(at, times), rtol=1e-7)
+    pulled, = jax.vjp(f, at)[1](np.ones((3, 1)))
+    np.testing.assert_allclose(pulled, expected.sum(axis=0), rtol=1e-7)
+
+
+def test_jax_gets_no_second_derivatives(jax, position):
+    with pytest.raises(ValueError, match="do not support JVP"):
+        jax.hessian(lambda theta: position.to_jax()(theta).sum())(sets[0])
+
+
+def test_torch_has_the_gradients_of_the_closed_form(position, launches):
+    torch = pytest.importorskip("torch")
+    f = position.to_torch()
+    theta = torch.tensor(sets, requires_grad=True)
+    f(theta).square().sum().backward()
+    expected = 2 * np.einsum("bt,bti->bi", closed_form(sets, times), closed_slopes(sets, times))
+    np.testing.assert_allclose(theta.grad.numpy(), expected, rtol=1e-6, atol=1e-8)
+    assert launches == [3]
+    loss = lambda one: f(one).square().sum()  # noqa: E731
+    several = torch.func.vmap(torch.func.grad(loss))(torch.tensor(sets))
+    np.testing.assert_allclose(several.numpy(), expected, rtol=1e-6, atol=1e-8)
+    assert launches == [3, 3]
+    slopes = torch.func.jacfwd(f)(torch.tensor(sets[0]))
+    np.testing.assert_allclose(slopes[:, 0].numpy(), closed_slopes(sets, times)[0], rtol=1e-7, atol=1e-9)
+    with pytest.raises(my.Error, match="second derivatives"):
+        gradient, = torch.autograd.grad(f(theta).square().sum(), theta, create_graph=True)
+        gradient.sum().backward()
