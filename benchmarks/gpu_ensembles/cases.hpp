@@ -23,6 +23,8 @@ struct benchmark_case {
 
 /// lorenz_rk4, and lorenz_tsit5 at three tolerances.
 std::vector<benchmark_case> lorenz_cases();
+/// Lorenz 96 with 4 to 512 states.
+std::vector<benchmark_case> lorenz96_cases();
 benchmark_case keller_miksis_case();
 benchmark_case relief_valve_case();
 benchmark_case duffing_events_case();

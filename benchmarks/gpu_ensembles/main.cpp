@@ -124,6 +124,7 @@ std::vector<benchmark_case> all_cases() {
     for (benchmark_case& what : method_cases()) all.push_back(std::move(what));
     all.push_back(schedule_case());
     for (benchmark_case& what : stiff_cases()) all.push_back(std::move(what));
+    for (benchmark_case& what : lorenz96_cases()) all.push_back(std::move(what));
     return all;
 }
 

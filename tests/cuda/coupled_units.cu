@@ -1,23 +1,27 @@
 // SPDX-License-Identifier: MIT
-// The kernels of coupled units: a small system takes what the same system written as a whole takes, and one of 256
-// states, whose Jacobian is full, compiles, in local memory.
+// The kernels of coupled units: a small system takes what the same system written as a whole takes; the parts of a
+// team's threads are in registers, those of 30 states and those of 256, whose Jacobian is full.
 //
 // limit: integrate_ensemble<coupled_units<oscillator, 4>, cash_karp> stack 40 spill 0 registers_within 1.05 of integrate_ensemble<whole_ring<4>, cash_karp>
-// limit: integrate_ensemble<coupled_units<cluster_bubble, 128>, cash_karp> stack 40000 spill 45000 registers 168
+// limit: integrate_ensemble<part_of_units<coupled_units<of_team<place, 8>, 30>, 8>, tsitouras_5> stack 0 spill 0 registers 128
+// limit: integrate_ensemble<part_of_units<coupled_units<cluster_bubble, 128>, 32>, cash_karp> stack 0 spill 0
 
 #include <myriad/cuda/kernel.cuh>
 #include <myriad/methods.hpp>
 #include <myriad/model.hpp>
 
 #include "examples/bubble_cluster/cluster.hpp"
-#include "tests/kernel/model/unit_models.hpp"
+#include "tests/kernel/model/teams.hpp"
 
-#define INSTANTIATE(Model, placement)                                                                          \
-    template __global__ void                                                                                   \
-    myriad::detail::integrate_ensemble<Model, myriad::cash_karp, double, myriad::shared_placement::placement>( \
+#define INSTANTIATE(Model, Method, placement)                                                               \
+    template __global__ void                                                                                \
+    myriad::detail::integrate_ensemble<Model, myriad::Method, double, myriad::shared_placement::placement>( \
         const __grid_constant__ myriad::detail::launch_arguments<Model, double, myriad::shared_placement::placement>);
 using small = units::ring<4>;
 using small_as_a_whole = units::whole_ring<4>;
-INSTANTIATE(small, constant_bank)
-INSTANTIATE(small_as_a_whole, constant_bank)
-INSTANTIATE(bubble_cluster, cache)
+using part_of_30 = myriad::detail::model_of_thread<teams::places<8>, myriad::tsitouras_5, double>;
+using part_of_256 = myriad::detail::model_of_thread<bubble_cluster, myriad::cash_karp, double>;
+INSTANTIATE(small, cash_karp, constant_bank)
+INSTANTIATE(small_as_a_whole, cash_karp, constant_bank)
+INSTANTIATE(part_of_30, tsitouras_5, constant_bank)
+INSTANTIATE(part_of_256, cash_karp, cache)

@@ -20,6 +20,8 @@
 // expect: this enumerator is of another kind of component
 // case: states_of_the_system
 // expect: the states of coupled units are those of the units
+// case: team_that_does_not_divide_a_warp
+// expect: threads_per_instance does not divide a warp: it is 1, 2, 4, 8, 16 or 32
 // SPDX-License-Identifier: MIT
 // Units that cannot be coupled.
 #include "myriad/coupled_units.hpp"
@@ -28,6 +30,9 @@
 #include "myriad/model.hpp"
 
 struct cell {
+#if defined CASE_team_that_does_not_divide_a_warp
+    static constexpr int threads_per_instance = 12;
+#endif
 #if !defined CASE_unit_without_state
     enum unit_state { x, n_unit_state };
 #else

@@ -39,7 +39,9 @@ std::ostream& print(std::ostream& stream, const report_of<R>& r) {
     if (r.kernel.block_size > 0) {
         out << r.device << ", of them " << r.kernel_seconds << " s in kernels of " << r.kernel.registers
             << " registers and " << r.kernel.local_bytes << " bytes of local memory per thread, " << r.kernel.block_size
-            << " threads per block, shared parameters in " << name_of(r.kernel.shared_placement) << '\n';
+            << " threads per block, ";
+        if (r.kernel.threads_per_instance > 1) out << r.kernel.threads_per_instance << " of them per instance, ";
+        out << "shared parameters in " << name_of(r.kernel.shared_placement) << '\n';
     } else {
         out << r.threads << (r.threads == 1 ? " thread of " : " threads of ") << r.lanes
             << (r.lanes == 1 ? " lane, " : " lanes, ") << r.instruction_set << '\n';

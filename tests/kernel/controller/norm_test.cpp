@@ -100,7 +100,7 @@ TEST_CASE("in a pack, the largest ratio is NaN in the lanes where one component'
         for (int lane = 0; lane < pack::lanes; ++lane) {
             myriad::vec<pack, 3> ratio{pack(0.5), pack(2.0), pack(0.25)};
             set_lane(ratio[bad], lane, not_a_number);
-            const pack largest = myriad::detail::largest_ratio<myriad::cash_karp>(ratio);
+            const pack largest = myriad::detail::largest_ratio<myriad::cash_karp, 3>(ratio);
             for (int i = 0; i < pack::lanes; ++i) {
                 const double found = get_lane(largest, i);
                 CHECK((i == lane ? std::isnan(found) : found == 2.0));

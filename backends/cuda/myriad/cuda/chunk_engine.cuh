@@ -55,7 +55,7 @@ public:
         records(add);
         grow(memory_, bytes_for(count, arrays), per_instance);
         grow(records_, bytes_for(count, records), per_instance);
-        scheduler_.reserve(count, host.phases, launcher_.least_threads());
+        scheduler_.reserve(count, host.phases, launcher_.least_instances());
         std::size_t to_stage = 0;
         const auto stage = [&](auto* array, std::int64_t components, array_access, array_kind) {
             if (!is_pinned(array)) to_stage += bytes_of(array, components * count);
@@ -254,7 +254,8 @@ public:
         int multiprocessors = 0;
         MYRIAD_CUDA(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device_));
         const kernel_facts all = facts();
-        return std::int64_t{multiprocessors} * all.blocks_per_multiprocessor * all.block_size;
+        return std::int64_t{multiprocessors} * all.blocks_per_multiprocessor * all.block_size /
+               all.threads_per_instance;
     }
     void rest() override {
         const current_device here(device_);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The CUDA kernel: one thread takes one instance through the loop, or several in succession. Variants differ only in
-// where shared parameters are stored.
+// The CUDA kernel: one thread, or a team of threads, takes one instance through the loop, or several in succession.
+// Variants differ only in where shared parameters are stored.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +10,7 @@
 #include "myriad/cuda/local_memory.cuh"
 #include "myriad/kernel/core/stop_request.hpp"
 #include "myriad/kernel/integrator/integrate.hpp"
+#include "myriad/kernel/integrator/team_choice.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
@@ -22,8 +23,8 @@ inline constexpr bool costs_differ =
 /// What the host asks of a kernel that is running: a `stop_request` in device memory, or null. It is read out of line
 /// in kernels with adaptive steps or events: nvcc takes a loop whose end depends on a value in memory for one that
 /// waits for it, and yields in every turn. Beside a call, kernels of fixed steps without events would need more
-/// registers.
-template <bool out_of_line>
+/// registers. A team follows what its leading thread reads.
+template <bool out_of_line, int threads>
 class request_of_host {
 public:
     __device__ __forceinline__ explicit request_of_host(const std::uint32_t* stop) : stop_(stop) {}
@@ -50,10 +51,13 @@ private:
         const std::uint32_t* stop = stop_;
         MYRIAD_OPTIMISATION_BARRIER(stop);  // else the address stays in registers through the loop
         if constexpr (out_of_line) {
-            return read_out_of_line(stop);
+            return of_team(read_out_of_line(stop));
         } else {
-            return read(stop);
+            return of_team(read(stop));
         }
+    }
+    static __device__ __forceinline__ stop_request of_team(stop_request read) {
+        return static_cast<stop_request>(thread_team<threads>::of_leader(static_cast<unsigned>(read)));
     }
     static __device__ __noinline__ stop_request read_out_of_line(const std::uint32_t* stop) { return read(stop); }
     static __device__ __forceinline__ stop_request read(const std::uint32_t* stop) {
@@ -65,17 +69,19 @@ private:
     stop_request last_ = stop_request::none;
 };
 
-/// A thread's source of one instance, that of the thread's number.
-class own_instance : public request_of_host<false> {
+/// A source of one instance, that of the number of the thread, or of the team.
+template <int threads>
+class own_instance : public request_of_host<false, threads> {
 public:
     __device__ __forceinline__ own_instance(const std::int64_t size, const std::uint32_t*, unsigned long long*,
                                             const std::uint32_t* stop)
-        : request_of_host(stop), index_(static_cast<std::int64_t>(blockIdx.x) * blockDim.x + threadIdx.x) {
+        : request_of_host<false, threads>(stop),
+          index_((static_cast<std::int64_t>(blockIdx.x) * blockDim.x + threadIdx.x) / threads) {
         if (index_ >= size) index_ = -1;
     }
 
     __device__ __forceinline__ std::int64_t next() {
-        if (!gives_more()) return -1;
+        if (!this->gives_more()) return -1;
         const std::int64_t given = index_;
         index_ = -1;
         return given;
@@ -88,21 +94,23 @@ private:
 };
 
 /// A source of that instance and, if there is a queue, of further ones from the queue.
-class queued_instances : public request_of_host<true> {
+template <int threads>
+class queued_instances : public request_of_host<true, threads> {
 public:
     __device__ __forceinline__ queued_instances(std::int64_t size, const std::uint32_t* order,
                                                 unsigned long long* queue, const std::uint32_t* stop)
-        : request_of_host(stop), size_(size), order_(order), queue_(queue) {}
+        : request_of_host<true, threads>(stop), size_(size), order_(order), queue_(queue) {}
 
     __device__ __forceinline__ std::int64_t next() {
-        if (!gives_more()) return -1;
+        if (!this->gives_more()) return -1;
         std::int64_t block = blockIdx.x;
         MYRIAD_OPTIMISATION_BARRIER(block);  // else the address stays in registers through the loop
-        std::int64_t place = block * blockDim.x + threadIdx.x;
+        std::int64_t place = (block * blockDim.x + threadIdx.x) / threads;
         if (has_begun_) {
             if (queue_ == nullptr) return -1;
-            place =
-                static_cast<std::int64_t>(gridDim.x) * blockDim.x + static_cast<std::int64_t>(atomicAdd(queue_, 1ull));
+            const unsigned long long taken = thread_team<threads>::leads() ? atomicAdd(queue_, 1ull) : 0;
+            place = static_cast<std::int64_t>(gridDim.x) * blockDim.x / threads +
+                    static_cast<std::int64_t>(thread_team<threads>::of_leader(taken));
         }
         has_begun_ = true;
         if (place >= size_) return -1;
@@ -155,21 +163,49 @@ struct launch_arguments<Model, R, shared_placement::constant_bank> {
     std::int32_t shared_integer[at_least_one(n_shared_integer<Model>)];
 };
 
+/// Bytes of shared memory that a block, and each of its threads, take.
+template <class Model, class R>
+constexpr int find_bytes_of_block() {
+    if constexpr (team_size < Model >> 1) {
+        return Model::template bytes_of_block<R>;
+    } else {
+        return 0;
+    }
+}
+template <class Model, class R>
+inline constexpr int bytes_of_block = find_bytes_of_block<Model, R>();
+template <class Model, class Method, class R>
+constexpr int find_bytes_of_thread() {
+    if constexpr (team_size < Model >> 1) {
+        static_assert(shared_step_bytes<Method, Model, R> == 0, "a team has the shared memory for itself");
+        return Model::template bytes_of_thread<R>;
+    } else {
+        return shared_step_bytes<Method, Model, R>;
+    }
+}
+template <class Model, class Method, class R>
+inline constexpr int bytes_of_thread = find_bytes_of_thread<Model, Method, R>();
+
 /// What launches depend on. Launch parameters are put where these have them.
 template <class Model, class Method, class R>
-inline constexpr cuda::kernel_traits traits_of{numbers_of<Model>, shared_parameter_bytes<Model, R>,
-                                               max_block_size<Model>(), costs_differ<Model, Method>,
-                                               shared_step_bytes<Method, Model, R>};
+inline constexpr cuda::kernel_traits traits_of{numbers_of<whole_of<Model>>,
+                                               shared_parameter_bytes<Model, R>,
+                                               max_block_size<Model>(),
+                                               costs_differ<Model, Method>,
+                                               bytes_of_thread<Model, Method, R>,
+                                               bytes_of_block<Model, R>,
+                                               team_size<Model>};
 template <class Model, class R, shared_placement placement>
-constexpr bool is_laid_out =
-    sizeof(launch_arguments<Model, R, placement>) == cuda::launch_offsets<R>(numbers_of<Model>).bytes(placement);
+constexpr bool is_laid_out = sizeof(launch_arguments<Model, R, placement>) ==
+                             cuda::launch_offsets<R>(numbers_of<whole_of<Model>>).bytes(placement);
 
-/// Copies the shared parameters to the block's shared memory, behind what its threads' steps take, with all its
+/// Copies the shared parameters to the block's shared memory, behind what it and its threads take, with all its
 /// threads.
 template <class Model, class Method, class R>
 __device__ __forceinline__ shared_parameters<R> stage_shared(const shared_parameters<R>& from) {
     extern __shared__ double staged[];  // double: aligned for either real type
-    R* const real = reinterpret_cast<R*>(staged) + blockDim.x * (shared_step_bytes<Method, Model, R> / sizeof(R));
+    R* const real = reinterpret_cast<R*>(staged) + bytes_of_block<Model, R> / sizeof(R) +
+                    blockDim.x * (bytes_of_thread<Model, Method, R> / sizeof(R));
     auto* const integer = reinterpret_cast<std::int32_t*>(real + n_shared<Model>);
     for (int i = static_cast<int>(threadIdx.x); i < n_shared<Model>; i += static_cast<int>(blockDim.x))
         real[i] = from.real[i];
@@ -189,7 +225,12 @@ __device__ __forceinline__ void integrate_thread(const launch_arguments<Model, R
     shared_parameters<R> shared = arguments.ensemble.shared;
     if constexpr (placement == shared_placement::constant_bank) shared = {arguments.shared, arguments.shared_integer};
     if constexpr (placement == shared_placement::shared_memory) shared = detail::stage_shared<Model, Method, R>(shared);
-    using supply = std::conditional_t<costs_differ<Model, Method>, queued_instances, own_instance>;
+    constexpr int threads = team_size<Model>;
+    if constexpr (threads > 1) {
+        Model::stage_tolerances(arguments.ensemble, static_cast<int>(threadIdx.x), static_cast<int>(blockDim.x));
+        __syncthreads();
+    }
+    using supply = std::conditional_t<costs_differ<Model, Method>, queued_instances<threads>, own_instance<threads>>;
     supply instances(arguments.ensemble.size, arguments.ensemble.order, arguments.queue, arguments.stop);
     detail::integrate<Model, Method, R>(arguments.ensemble, shared, instances);
 }

@@ -37,8 +37,9 @@ public:
         : kernels_(std::move(kernels)), offsets_(kernels_.traits.model) {
         int limit = 0;
         MYRIAD_CUDA(cudaDeviceGetAttribute(&limit, cudaDevAttrMaxSharedMemoryPerBlockOptin, device));
+        facts_.threads_per_instance = traits().team;
         const int bytes = traits().shared_bytes;
-        const bool fits = bytes + smallest_block * traits().step_bytes <= limit;
+        const bool fits = bytes + traits().block_bytes + smallest_block() * traits().step_bytes <= limit;
         facts_.shared_placement = wanted.shared_placement;
         if (wanted.shared_placement == place::automatic)
             facts_.shared_placement = is_compiled(place::constant_bank, bytes) ? place::constant_bank
@@ -61,8 +62,8 @@ public:
     const kernel_traits& traits() const { return kernels_.traits; }
     const cost_kernels& sort() const { return kernels_.sort; }
     study_kernels study() const { return kernels_.study(); }
-    /// Number of threads that gives every warp scheduler of the GPU one warp.
-    std::int64_t least_threads() const { return std::int64_t{128} * multiprocessors_; }
+    /// Number of instances that gives every warp scheduler of the GPU one warp.
+    std::int64_t least_instances() const { return std::int64_t{128} * multiprocessors_ / traits().team; }
     void note(schedule how) { facts_.schedule = how; }
     /// Has later launches read there whether to stop.
     void listen_to(const std::uint32_t* stop) { stop_ = stop; }
@@ -78,7 +79,7 @@ public:
     /// once.
     void launch(const any_arguments<R>& arguments, unsigned long long* queue, cudaStream_t where) {
         const int block = facts_.block_size = block_for(arguments.size);
-        auto blocks = static_cast<unsigned>((arguments.size + block - 1) / block);
+        auto blocks = static_cast<unsigned>((arguments.size * traits().team + block - 1) / block);
         if (queue != nullptr) blocks = std::min(blocks, blocks_at_once(block));
         facts_.shared_bytes = shared_bytes_of(block);
         divide_cache(static_cast<int>(blocks), block);
@@ -95,7 +96,8 @@ public:
 
 private:
     static constexpr std::int64_t cache_bytes = 128 * 1024;  // of a V100; later GPUs have more
-    static constexpr int smallest_block = 8;                 // of kernels with steps in shared memory
+    /// Of kernels with steps in shared memory: parts of a warp, unless teams share it out.
+    int smallest_block() const { return traits().team > 1 ? 32 : 8; }
 
     const void* function() const {
         return facts_.shared_placement == place::shared_memory ? kernels_.integrate_staged : kernels_.integrate;
@@ -106,7 +108,7 @@ private:
     }
     int shared_bytes_of(int block) const {
         const int parameters = facts_.shared_placement == place::shared_memory ? traits().shared_bytes : 0;
-        return block * traits().step_bytes + parameters;
+        return traits().block_bytes + block * traits().step_bytes + parameters;
     }
     /// Writes values to a place of the launch parameters.
     template <class T>
@@ -126,11 +128,14 @@ private:
                 wanted <= 1024 && traits().max_block_size < wanted
                     ? ", or let the model declare a larger `static constexpr int max_block_size`"
                     : "");
+        require(traits().team == 1 || wanted % 32 == 0, "block_size is ", wanted, ", but teams of ", traits().team,
+                " threads integrate an instance together, which need whole warps", host::cure,
+                "give a multiple of 32, or 0 for the size with the best occupancy");
         // The smallest block size among those that keep most threads resident. Where shared memory limits these, blocks
         // of one warp leave least of it unused; where it has no room for a warp, blocks are parts of one.
         int first = wanted > 0 ? wanted : std::min(keeps_steps_in_shared_memory() ? 32 : 64, most / 32 * 32);
         consider_blocks(first, wanted > 0 ? wanted : most);
-        while (facts_.block_size == 0 && wanted == 0 && keeps_steps_in_shared_memory() && first > smallest_block) {
+        while (facts_.block_size == 0 && wanted == 0 && keeps_steps_in_shared_memory() && first > smallest_block()) {
             first /= 2;
             consider_blocks(first, first);
         }
@@ -183,9 +188,10 @@ private:
     int block_for(std::int64_t size) const {
         int block = chosen_block_;
         if (chosen_by_user_) return block;
-        while (block > 32 && size <= static_cast<std::int64_t>(multiprocessors_) * block / 2) block /= 2;
-        if (traits().costs_differ) {
-            const std::int64_t warps = keeps_steps_in_shared_memory() ? multiprocessors_ : least_threads() / 32;
+        while (block > 32 && size * traits().team <= static_cast<std::int64_t>(multiprocessors_) * block / 2)
+            block /= 2;
+        if (traits().costs_differ && traits().team == 1) {
+            const std::int64_t warps = keeps_steps_in_shared_memory() ? multiprocessors_ : least_instances() / 32;
             while (block > 1 && block <= 32 && size <= warps * (block / 2) && fits_the_cache(size, block / 2))
                 block /= 2;
         }

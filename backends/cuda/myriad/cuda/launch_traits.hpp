@@ -17,10 +17,12 @@ constexpr bool is_compiled(shared_placement placement, int shared_bytes) {
 /// What the launch of a kernel depends on besides its compiled resources.
 struct kernel_traits {
     detail::model_numbers model;
-    std::int32_t shared_bytes;    // of both kinds of shared parameters
-    std::int32_t max_block_size;  // as the model or the library limits it
-    bool costs_differ;            // whether instances may differ in cost
-    std::int32_t step_bytes;      // of shared memory that each thread's steps take
+    std::int32_t shared_bytes;     // of both kinds of shared parameters
+    std::int32_t max_block_size;   // as the model or the library limits it
+    bool costs_differ;             // whether instances may differ in cost
+    std::int32_t step_bytes;       // of shared memory that each thread takes, for its steps or for its team
+    std::int32_t block_bytes = 0;  // of shared memory that a block takes besides
+    std::int32_t team = 1;         // threads that integrate an instance together
 };
 
 /// Where a kernel of such a model has its launch parameters, in bytes: the members of `launch_arguments`.

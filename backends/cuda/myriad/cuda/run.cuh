@@ -21,13 +21,14 @@ template <class Model, class Method, class R>
 model_kernels compiled_kernels() {
     using place = shared_placement;
     constexpr auto here = [](auto* kernel) { return reinterpret_cast<const void*>(kernel); };
-    constexpr kernel_traits traits = traits_of<Model, Method, R>;
+    using part = model_of_thread<Model, Method, R>;
+    constexpr kernel_traits traits = traits_of<part, Method, R>;
     model_kernels all{traits, nullptr, nullptr, {}, {}};
     if constexpr (is_compiled(place::constant_bank, traits.shared_bytes)) {
-        all.integrate = here(&integrate_ensemble<Model, Method, R, place::constant_bank>);
+        all.integrate = here(&integrate_ensemble<part, Method, R, place::constant_bank>);
     } else {
-        all.integrate = here(&integrate_ensemble<Model, Method, R, place::cache>);
-        all.integrate_staged = here(&integrate_ensemble<Model, Method, R, place::shared_memory>);
+        all.integrate = here(&integrate_ensemble<part, Method, R, place::cache>);
+        all.integrate_staged = here(&integrate_ensemble<part, Method, R, place::shared_memory>);
     }
     all.sort = {here(&count_all_costs), here(&sum_costs), here(&place_by_cost)};
     all.study = [here]() -> study_kernels {

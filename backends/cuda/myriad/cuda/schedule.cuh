@@ -35,10 +35,10 @@ public:
     void forget_costs() { costs_known_ = false; }
 
     void launch(kernel_launcher<R>& kernel, arguments now, cudaStream_t where) {
-        const schedule how = chosen(now.size, now.phases, kernel.least_threads());
+        const schedule how = chosen(now.size, now.phases, kernel.least_instances());
         kernel.note(how);
         if (how == schedule::in_order) return kernel.launch(now, nullptr, where);
-        reserve(now.size, now.phases, kernel.least_threads());
+        reserve(now.size, now.phases, kernel.least_instances());
         if (how == schedule::dynamic) return launch_with_queue(kernel, now, where);
         now.cost = by_cost_.cost();
         if (!costs_known_) {

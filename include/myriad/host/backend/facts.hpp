@@ -19,6 +19,7 @@ struct kernel_facts {
     myriad::shared_placement shared_placement = myriad::shared_placement::constant_bank;
     myriad::schedule schedule = myriad::schedule::in_order;  ///< of the last call of `integrate`
     int blocks_per_multiprocessor = 0;  ///< resident at the same time, for the size with the best occupancy
+    int threads_per_instance = 1;       ///< that integrate one together: a team, of coupled units
 };
 
 }  // namespace myriad::cuda

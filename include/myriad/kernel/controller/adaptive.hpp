@@ -150,6 +150,7 @@ struct adaptive_stepping {
     MYRIAD_FUNCTION bool stagnates(int i) {
         const std::int64_t index = s.instance[i];
         const R t = get_lane(s.data.t, i), gained = abs(t - args.t[index]);
+        team_for<Model>::synchronise();  // all have read it
         args.t[index] = t;
         if (!get_lane(s.steps.last_not_finite, i)) return false;
         const R t_begin = args.t_begin != nullptr ? args.t_begin[index] : args.common_t_begin;

@@ -87,7 +87,7 @@ struct fixed_stepping {
     template <class EndStuck>
     MYRIAD_FUNCTION step_decision<S> judge(const trial_step<Method, S, n>& trial, const S&, const mask& valid,
                                            EndStuck&& end_stuck) const {
-        const mask finite = valid & all_finite(trial.y), failed = s.running() & !finite;
+        const mask finite = valid & team_for<Model>::all(all_finite(trial.y)), failed = s.running() & !finite;
         if (MYRIAD_UNLIKELY(any(failed))) end_stuck(failed, mask(false));
         const mask accepted = s.running() & finite;
         return {accepted, s.data.h_next};

@@ -36,8 +36,9 @@ template <class S>
 MYRIAD_FUNCTION S larger_scale(const S& a, const S& b) {
     return larger(a, b);
 }
-/// The largest of non-negative numbers; NaN if one of them is.
-template <class Method, class S, int n>
+/// The largest of non-negative numbers, one for each of a thread's n states, of which the whole system has `all`; NaN
+/// if one of them is.
+template <class Method, int all, class S, int n>
 MYRIAD_FUNCTION S largest_ratio(const vec<S, n>& a) {
     S largest = a[0], sum = a[0];
     MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
@@ -68,9 +69,11 @@ MYRIAD_FUNCTION double larger_scale(const double& a, const double& b) {
     const unsigned upper = ::max(static_cast<unsigned>(__double2hiint(a)), static_cast<unsigned>(__double2hiint(b)));
     return __hiloint2double(static_cast<int>(upper), 0);
 }
-template <class Method, int n>
+template <class Method, int all, int n>
 MYRIAD_FUNCTION double largest_ratio(const vec<double, n>& a) {
     double largest = a[0];
+    // The only state of a thread of a team loses its lower half as well: the same bits for every size of team.
+    if constexpr (n == 1 && all > 1) largest = larger_scale(largest, largest);
     MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
     for (int c = 1; c < n; ++c) largest = larger_scale(a[c], largest);
     return largest;
@@ -91,7 +94,7 @@ MYRIAD_FUNCTION error_scale<S, n_controlled<Model>> scale_of_errors(const kernel
     S largest = S(real_of<S>(0));  // may skip NaN
     MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
     for (int c = 0; c < n_controlled<Model>; ++c) {
-        const S atol = S(args.absolute_tolerance[c]), rtol = S(args.relative_tolerance[c]);
+        const S atol = S(detail::absolute_tolerance_of(args, c)), rtol = S(detail::relative_tolerance_of(args, c));
         const S size = larger_magnitude(y[c], y1[c]);
         if constexpr (!tells_infinity<S>) largest = c == 0 ? size : larger(largest, size);
         if constexpr (adds_tolerances<Method>) {
@@ -110,8 +113,9 @@ MYRIAD_FUNCTION error_scale<S, n_controlled<Model>> scale_of_errors(const kernel
     return scale;
 }
 
-/// The largest |factor * sum(c)| / scale over the components, or the chosen norm; NaN if one of them is.
-template <class Method, class S, int n, class Sum>
+/// The largest |factor * sum(c)| / scale over the components, or the chosen norm; NaN if one of them is. `all` is the
+/// number of components of the whole system.
+template <class Method, int all, class S, int n, class Sum>
 MYRIAD_FUNCTION control_of<S> error_over_tolerance(const vec<S, n>& scale, const S& factor, Sum&& sum) {
     using C = control_of<S>;
     if constexpr (averages_errors<Method>) {
@@ -127,7 +131,7 @@ MYRIAD_FUNCTION control_of<S> error_over_tolerance(const vec<S, n>& scale, const
         vec<S, n> ratio;
         MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
         for (int c = 0; c < n; ++c) ratio[c] = error_ratio(sum(c), scale[c]);
-        return static_cast<C>(largest_ratio<Method>(ratio) * abs(factor));
+        return static_cast<C>(largest_ratio<Method, all>(ratio) * abs(factor));
     }
 }
 
@@ -147,11 +151,12 @@ MYRIAD_FUNCTION error_norm<S> scaled_error(const kernel_arguments<Model, real_of
     const auto scale = detail::scale_of_errors<Method, Model>(args, y, trial.y);
     const auto worst_of = [&](auto row) MYRIAD_LAMBDA {
         constexpr int weights = decltype(row)::value;
-        return error_over_tolerance<Method>(scale.of, detail::error_factor<Method, weights>(h),
-                                            [&](int c)
-                                                MYRIAD_LAMBDA { return detail::error_sum<Method, weights>(trial, c); });
+        return team_for<Model>::largest(error_over_tolerance<Method, n_state<whole_of<Model>>>(
+            scale.of, detail::error_factor<Method, weights>(h),
+            [&](int c) MYRIAD_LAMBDA { return detail::error_sum<Method, weights>(trial, c); }));
     };
     error_norm<S> norm{worst_of(constant_index<row_of<Method>::error>{}), scale.finite};
+    if constexpr (!tells_infinity<S>) norm.finite = team_for<Model>::all(norm.finite);
     if constexpr (has_coarse_estimate<Method>) {
         using C = control_of<S>;
         using R = real_of<C>;

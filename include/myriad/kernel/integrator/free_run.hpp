@@ -61,7 +61,7 @@ struct free_run {
                 detail::take_trial_step<Method, Model>(t, step, t + step, now, p, trial);
                 now = trial.y;
             }
-            if (MYRIAD_UNLIKELY(any(s.running() & !all_finite(now)))) {
+            if (MYRIAD_UNLIKELY(any(s.running() & !team_for<Model>::all(all_finite(now))))) {
                 if (block == 1) break;
                 block /= 2;
                 continue;

@@ -108,7 +108,8 @@ private:
     MYRIAD_FUNCTION void load(int i) {
         const std::int64_t index = s.instance[i];
         MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
-        for (int c = 0; c < n; ++c) set_lane(s.data.y[c], i, at(args.state, c, i));
+        for (int c = 0; c < n; ++c) set_lane(s.data.y[c], i, at(args.state, detail::whole_state<Model>(c), i));
+        if constexpr (team_size < Model >> 1) Model::load_parameters(args, index);
         MYRIAD_UNROLL
         for (int c = 0; c < n_parameter<Model>; ++c) set_lane(s.data.parameter[c], i, at(args.parameter, c, i));
         MYRIAD_UNROLL
@@ -132,7 +133,7 @@ private:
     MYRIAD_FUNCTION void store(int i) const {
         const std::int64_t index = s.instance[i];
         MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
-        for (int c = 0; c < n; ++c) at(args.state, c, i) = get_lane(s.data.y[c], i);
+        for (int c = 0; c < n; ++c) at(args.state, detail::whole_state<Model>(c), i) = get_lane(s.data.y[c], i);
         if constexpr (writes_parameters<Model>) {
             MYRIAD_UNROLL
             for (int c = 0; c < n_parameter<Model>; ++c) at(args.parameter, c, i) = get_lane(s.data.parameter[c], i);
@@ -260,7 +261,7 @@ private:
     /// Ends the phase of lane i: `finalise`, record, count; if it failed, ends the instance.
     MYRIAD_FUNCTION void end_phase(int i) {
         const std::int64_t index = s.instance[i];
-        if (args.accepted != nullptr) count_work(i);
+        if (args.accepted != nullptr && team_for<Model>::leads()) count_work(i);
         set_lane(s.data.t, i, stepping_type{args, s}.time(i));
         if constexpr (m > 0) events.store(i);
         args.t[index] = get_lane(s.data.t, i);
@@ -271,7 +272,7 @@ private:
         args.status[index] = s.ending[i];
         if (!failed) {
             record(i, args.phases - s.phases_left[i] - args.record.from_phase);
-            args.phase[index] += 1;
+            if (team_for<Model>::leads()) args.phase[index] += 1;
         }
         --s.phases_left[i];
         if (args.cost != nullptr) args.cost[index] = static_cast<std::uint32_t>(s.iterations_of(args, i));
@@ -280,6 +281,7 @@ private:
             s.phases_left[i] = 0;
             if (args.cost != nullptr) args.cost[index] = 0;
         }
+        team_for<Model>::synchronise();  // all see what the leading thread has written
     }
 
     MYRIAD_FUNCTION void record(int i, std::int32_t row) const {
@@ -290,8 +292,10 @@ private:
         };
         if (r.time_column >= 0) to(r.values, r.time_column) = get_lane(s.data.t, i);
         MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
-        for (int c = 0; c < n; ++c)
-            if (args.state_column[c] >= 0) to(r.values, args.state_column[c]) = get_lane(s.data.y[c], i);
+        for (int c = 0; c < n; ++c) {
+            const int column = args.state_column[detail::whole_state<Model>(c)];
+            if (column >= 0) to(r.values, column) = get_lane(s.data.y[c], i);
+        }
         MYRIAD_UNROLL
         for (int c = 0; c < n_accessory<Model>; ++c)
             if (args.accessory_column[c] >= 0)

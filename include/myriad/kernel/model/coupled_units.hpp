@@ -34,6 +34,16 @@ MYRIAD_FUNCTION void each_unit(F&& f) {
     detail::each_unit<0, units, 1, units * n_unit_state<Unit> <= largest_unrolled_system>(f);
 }
 
+/// The number of threads of a GPU that integrate an instance, as units declare it; zero if the library is to choose.
+template <class Unit>
+constexpr int declared_team() {
+    if constexpr (requires { Unit::threads_per_instance; }) {
+        return Unit::threads_per_instance;
+    } else {
+        return 0;
+    }
+}
+
 /// The inputs of one unit.
 template <class Unit, int units, class Inputs>
 MYRIAD_FUNCTION auto inputs_of_unit(const Inputs& p, int unit) {
@@ -325,6 +335,9 @@ constexpr bool check_units() {
                   "`observe`");
     static_assert(!has_triggers<Unit>, "coupled units have no triggers: give an event an action");
     static_assert(!has_jacobian<Unit>, "coupled units have no jacobian: it comes from rhs by dual numbers");
+    constexpr int team = declared_team<Unit>();
+    static_assert(team == 0 || (team > 0 && 32 % team == 0),
+                  "threads_per_instance does not divide a warp: it is 1, 2, 4, 8, 16 or 32");
     return check_couplings<Unit, units>();
 }
 

@@ -53,6 +53,12 @@ MYRIAD_FUNCTION const S* first_of(const vec<S, n>& v) {
     return first_of(const_cast<vec<S, n>&>(v));
 }
 
+/// The parameters that a team has in its memory.
+template <class S>
+MYRIAD_FUNCTION S* first_of(S* first) {
+    return first;
+}
+
 /// Where the components of a unit begin, of which each has `size`, behind `before` of the system.
 template <int before, int size, class T>
 MYRIAD_FUNCTION T* first_of_unit(T* first, int unit) {

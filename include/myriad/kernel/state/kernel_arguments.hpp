@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "myriad/kernel/core/status.hpp"
+#include "myriad/kernel/core/team.hpp"
 #include "myriad/kernel/model/concepts.hpp"
 #include "myriad/kernel/model/model_facts.hpp"
 #include "myriad/kernel/state/instance_arrays.hpp"
@@ -148,11 +149,11 @@ struct argument_offsets {
     int end = 0;
 };
 
-/// The arrays of a model's kernel.
+/// The arrays of a model's kernel; the same for a part of it.
 template <class Model, class R>
 struct argument_arrays {
 private:
-#define MYRIAD_COUNT(kind, ...) static constexpr int n_##kind = detail::n_##kind<Model>;
+#define MYRIAD_COUNT(kind, ...) static constexpr int n_##kind = detail::n_##kind<whole_of<Model>>;
     MYRIAD_COMPONENT_KINDS(MYRIAD_COUNT)
 #undef MYRIAD_COUNT
 
@@ -165,5 +166,23 @@ public:
 /// The arguments of a kernel.
 template <class Model, class R>
 struct kernel_arguments : argument_head<R>, argument_arrays<Model, R> {};
+
+/// The tolerances of a thread's state. A team has them in shared memory, as each of its threads wants another one.
+template <class Model, class R>
+MYRIAD_FUNCTION R relative_tolerance_of(const kernel_arguments<Model, R>& args, int c) {
+    if constexpr (team_size<Model> == 1) {
+        return args.relative_tolerance[c];
+    } else {
+        return Model::template tolerances<R>()[Model::whole_state(c)];
+    }
+}
+template <class Model, class R>
+MYRIAD_FUNCTION R absolute_tolerance_of(const kernel_arguments<Model, R>& args, int c) {
+    if constexpr (team_size<Model> == 1) {
+        return args.absolute_tolerance[c];
+    } else {
+        return Model::template tolerances<R>()[n_state<whole_of<Model>> + Model::whole_state(c)];
+    }
+}
 
 }  // namespace myriad::detail

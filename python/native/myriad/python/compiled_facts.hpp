@@ -10,7 +10,7 @@
 namespace myriad::python {
 
 /// Changes with what the core and compiled models exchange.
-inline constexpr std::uint32_t interface_version = 9;
+inline constexpr std::uint32_t interface_version = 10;
 
 struct compiled_facts {
     std::uint32_t interface_version;

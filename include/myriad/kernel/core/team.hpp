@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: MIT
+// Teams: threads of a warp that integrate one instance together, each a part of its state. What they do together is
+// here; in kernels of one thread per instance all of it is nothing.
+#pragma once
+
+#include <cstdint>
+#include <type_traits>
+
+#include "myriad/kernel/core/macros.hpp"
+
+#if defined(MYRIAD_SIMULATED_TEAM) && !defined(__CUDACC__)
+// Tests run the threads of a team one after the other on a CPU, each up to where it waits for the others.
+namespace myriad::simulated_team {
+int number_of_thread();
+/// Waits for all threads of the team.
+void synchronise();
+/// The value that another thread has given in the same call.
+std::uint64_t exchange(std::uint64_t value, int from);
+/// The memory that the threads share.
+void* memory();
+}  // namespace myriad::simulated_team
+#endif
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+/// The part of a model of coupled units that each of so many threads integrates: model/part_of_units.hpp.
+template <class Whole, int threads>
+struct part_of_units;
+
+/// The number of threads that integrate an instance, and the model whose states they share out.
+template <class Model>
+struct team_of_model {
+    static constexpr int threads = 1;
+    using whole = Model;
+};
+template <class Whole, int n>
+struct team_of_model<part_of_units<Whole, n>> {
+    static constexpr int threads = n;
+    using whole = Whole;
+};
+template <class Model>
+inline constexpr int team_size = team_of_model<Model>::threads;
+template <class Model>
+using whole_of = typename team_of_model<Model>::whole;
+
+/// Where the shared memory of this thread's block begins. Not constexpr, which has no such variables.
+#if defined(__CUDACC__)
+__host__ __device__ __forceinline__ void* memory_of_block() {
+#if defined(__CUDA_ARCH__)
+    extern __shared__ double shared_by_block[];  // double: aligned for either real type
+    return shared_by_block;
+#else
+    return nullptr;  // never called
+#endif
+}
+#elif defined(MYRIAD_SIMULATED_TEAM)
+inline void* memory_of_block() { return simulated_team::memory(); }
+#else
+inline void* memory_of_block() { return nullptr; }
+#endif
+
+/// What `threads` threads of a warp do together. Each function is called by all of them, and returns the same in all.
+template <int threads>
+struct thread_team {
+    static_assert(threads > 0 && 32 % threads == 0, "the threads of a team divide a warp: 1, 2, 4, 8, 16 or 32");
+
+    /// The number of this thread within its team.
+    static MYRIAD_FUNCTION int number_of_thread() {
+        if constexpr (threads == 1) return 0;
+#if defined(__CUDA_ARCH__)
+        return static_cast<int>(threadIdx.x) % threads;
+#elif defined(MYRIAD_SIMULATED_TEAM) && !defined(__CUDACC__)
+        return simulated_team::number_of_thread();
+#else
+        return 0;
+#endif
+    }
+    /// Whether this is the thread that writes what belongs to the whole instance.
+    static MYRIAD_FUNCTION bool leads() { return number_of_thread() == 0; }
+
+    /// Waits for all threads, which then see what the others have written.
+    static MYRIAD_FUNCTION void synchronise() {
+        if constexpr (threads > 1) {
+#if defined(__CUDA_ARCH__)
+            __syncwarp(mask());
+#elif defined(MYRIAD_SIMULATED_TEAM) && !defined(__CUDACC__)
+            simulated_team::synchronise();
+#endif
+        }
+    }
+
+    /// Whether it holds in all threads; in packs, lane by lane.
+    template <class M>
+    static MYRIAD_FUNCTION M all(const M& holds) {
+        if constexpr (threads == 1) {
+            return holds;
+        } else {
+#if defined(__CUDA_ARCH__)
+            return __all_sync(mask(), holds) != 0;
+#else
+            return reduced(std::uint64_t{!holds}) == 0;
+#endif
+        }
+    }
+
+    /// The largest of the threads' non-negative numbers; NaN if one is. Their bits as integers have the same order,
+    /// with NaN above infinity, so that it does not depend on the order of the threads.
+    template <class S>
+    static MYRIAD_FUNCTION S largest(const S& own) {
+        if constexpr (threads == 1) {
+            return own;
+        } else if constexpr (sizeof(S) == sizeof(std::uint32_t)) {
+            return __builtin_bit_cast(S, reduced(__builtin_bit_cast(std::uint32_t, own) & 0x7fffffffu));
+        } else {
+            return __builtin_bit_cast(S, reduced(__builtin_bit_cast(std::uint64_t, own) & ~(std::uint64_t{1} << 63)));
+        }
+    }
+
+    /// The value of the leading thread.
+    template <class T>
+    static MYRIAD_FUNCTION T of_leader(T own) {
+        if constexpr (threads == 1) return own;
+#if defined(__CUDA_ARCH__)
+        return __shfl_sync(mask(), own, 0, threads);
+#elif defined(MYRIAD_SIMULATED_TEAM) && !defined(__CUDACC__)
+        return static_cast<T>(simulated_team::exchange(static_cast<std::uint64_t>(own), 0));
+#else
+        return own;
+#endif
+    }
+
+private:
+#if defined(__CUDA_ARCH__)
+    static __device__ __forceinline__ unsigned mask() {
+        if constexpr (threads == 32) {
+            return 0xffffffffu;
+        } else {
+            return ((1u << threads) - 1u) << (threadIdx.x % 32 / threads * threads);
+        }
+    }
+#endif
+    /// The largest of the threads' unsigned integers.
+    template <class U>
+    static MYRIAD_FUNCTION U reduced(U own) {
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800
+        if constexpr (sizeof(U) == sizeof(unsigned)) {
+            return __reduce_max_sync(mask(), own);
+        } else {
+            return reduced_in_pairs(own);
+        }
+#else
+        return reduced_in_pairs(own);
+#endif
+    }
+    template <class U>
+    static MYRIAD_FUNCTION U reduced_in_pairs(U own) {
+        MYRIAD_UNROLL
+        for (int distance = threads / 2; distance > 0; distance /= 2) {
+            const U other = of_pair(own, distance);
+            own = other > own ? other : own;
+        }
+        return own;
+    }
+    /// The value of the thread whose number differs in one bit.
+    template <class U>
+    static MYRIAD_FUNCTION U of_pair(U own, int distance) {
+#if defined(__CUDA_ARCH__)
+        return __shfl_xor_sync(mask(), static_cast<device_integer<U>>(own), distance, threads);
+#elif defined(MYRIAD_SIMULATED_TEAM) && !defined(__CUDACC__)
+        return static_cast<U>(simulated_team::exchange(own, number_of_thread() ^ distance));
+#else
+        static_cast<void>(distance);
+        return own;
+#endif
+    }
+    /// CUDA's functions know no other 64-bit integer.
+    template <class U>
+    using device_integer = std::conditional_t<sizeof(U) == 8, unsigned long long, unsigned>;
+};
+
+/// The team that integrates an instance of a model, or of the one of which it is a part.
+template <class Model>
+using team_for = thread_team<team_size<Model>>;
+
+/// The number of a thread's state among those of the whole model.
+template <class Model>
+MYRIAD_FUNCTION int whole_state(int c) {
+    if constexpr (team_size<Model> == 1) {
+        return c;
+    } else {
+        return Model::whole_state(c);
+    }
+}
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// How many threads of a GPU integrate an instance, as decided when a kernel is compiled.
+#include "myriad/kernel/integrator/team_choice.hpp"
+
+#include <myriad/coupled_units.hpp>
+#include <myriad/methods.hpp>
+#include <myriad/model.hpp>
+
+#include "tests/catch.hpp"
+#include "tests/kernel/model/teams.hpp"
+
+namespace {
+
+using myriad::detail::threads_per_instance;
+
+template <int units, class R>
+constexpr int chosen = threads_per_instance<myriad::coupled_units<teams::place, units>, myriad::tsitouras_5, R>();
+
+template <int n>
+struct large_unit {
+    enum unit_state { n_unit_state = n };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n> rhs(int, auto, const auto&, const auto&) {
+        return {};
+    }
+};
+struct place_with_a_hook : teams::of_team<teams::place, 8> {
+    MYRIAD_FUNCTION static void after_step(int, auto&) {}
+};
+
+}  // namespace
+
+TEST_CASE("a team has about 32 bytes of the state in each thread, and is a warp at most") {
+    CHECK(chosen<4, double> == 1);
+    CHECK(chosen<16, double> == 1);
+    CHECK(chosen<17, double> == 8);
+    CHECK(chosen<32, double> == 8);
+    CHECK(chosen<33, double> == 16);
+    CHECK(chosen<64, double> == 16);
+    CHECK(chosen<128, double> == 32);
+    CHECK(chosen<512, double> == 32);
+    CHECK(chosen<24, float> == 1);
+    CHECK(chosen<25, float> == 8);
+    CHECK(chosen<64, float> == 8);
+    CHECK(chosen<128, float> == 16);
+    CHECK(chosen<256, float> == 32);
+}
+
+TEST_CASE("a team has no threads without a unit beyond the next power of two") {
+    const auto threads_of = [](auto model) {
+        return threads_per_instance<decltype(model), myriad::tsitouras_5, double>();
+    };
+    CHECK(threads_of(myriad::coupled_units<large_unit<40>, 1>{}) == 1);
+    CHECK(threads_of(myriad::coupled_units<large_unit<20>, 2>{}) == 2);
+    CHECK(threads_of(myriad::coupled_units<large_unit<20>, 5>{}) == 8);
+}
+
+TEST_CASE("units say how many threads integrate them, and what teams do not have is integrated by one") {
+    using ring = teams::places<4>;
+    CHECK(threads_per_instance<ring, myriad::tsitouras_5, double>() == 4);
+    CHECK(threads_per_instance<teams::places<1>, myriad::tsitouras_5, double>() == 1);
+    CHECK(threads_per_instance<ring, myriad::rodas_5p, double>() == 1);
+    CHECK(threads_per_instance<ring, myriad::controlled<myriad::tsitouras_5, myriad::rms_norm>, double>() == 1);
+    CHECK(threads_per_instance<ring, myriad::dense<myriad::tsitouras_5>, double>() == 1);
+    CHECK(threads_per_instance<myriad::coupled_units<place_with_a_hook, 30>, myriad::tsitouras_5, double>() == 1);
+}

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+// Compiles the kernels of one thread per instance.
+#include <myriad/instantiate.hpp>
+
+#include "tests/kernel/model/teams.hpp"
+
+namespace teams {
+using places_alone = places<1>;
+using phases_alone = phases<1>;
+using ring_alone = ring<1>;
+}  // namespace teams
+
+MYRIAD_INSTANTIATE(teams::places_alone, teams::with_memory, myriad::dormand_prince_8, myriad::runge_kutta_4)
+MYRIAD_INSTANTIATE(teams::phases_alone, myriad::cash_karp)
+MYRIAD_INSTANTIATE(teams::ring_alone, teams::careful_start)

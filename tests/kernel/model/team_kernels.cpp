@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+// The kernels of coupled units by one thread and by teams.
+#include <myriad/instantiate.hpp>
+
+#include "tests/kernel/model/teams.hpp"
+
+namespace teams {
+using places_of_1 = places<1>;
+using places_of_8 = places<8>;
+using places_of_32 = places<32>;
+using phases_of_16 = phases<16>;
+}  // namespace teams
+
+MYRIAD_INSTANTIATE(teams::places_of_1, myriad::tsitouras_5)
+MYRIAD_INSTANTIATE(teams::places_of_8, myriad::tsitouras_5)
+MYRIAD_INSTANTIATE(teams::places_of_32, myriad::tsitouras_5)
+MYRIAD_INSTANTIATE(teams::phases_of_16, myriad::cash_karp)
