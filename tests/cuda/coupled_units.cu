@@ -21,6 +21,11 @@ using small = units::ring<4>;
 using small_as_a_whole = units::whole_ring<4>;
 using part_of_30 = myriad::detail::model_of_thread<teams::places<8>, myriad::tsitouras_5, double>;
 using part_of_256 = myriad::detail::model_of_thread<bubble_cluster, myriad::cash_karp, double>;
+// One thread has a large trial step in shared memory; a team has that memory for itself, however large the step.
+using part_of_512 =
+    myriad::detail::model_of_thread<myriad::coupled_units<teams::place, 512>, myriad::dormand_prince_8, double>;
+static_assert(myriad::detail::shared_step_bytes<myriad::tsitouras_5, teams::places<1>, double> > 0);
+static_assert(myriad::detail::shared_step_bytes<myriad::dormand_prince_8, part_of_512, double> == 0);
 INSTANTIATE(small, cash_karp, constant_bank)
 INSTANTIATE(small_as_a_whole, cash_karp, constant_bank)
 INSTANTIATE(part_of_30, tsitouras_5, constant_bank)
