@@ -26,7 +26,7 @@ REPORTS = {
     "docs/methods.md": (r"The figures are for commit (\w+)", ON_GPUS, 60, "scripts/method_registers.py"),
     "validation/gpu/results.csv": (r"^# sources: (\w+)", ON_GPUS, 60, "scripts/validate.sh --device cuda"),
     "benchmarks/results/h200.csv": (r"^# commit: (\w+)", ON_GPUS, 60, "scripts/gpu.sh --bench"),
-    "benchmarks/results/cpu.csv": (r"^# commit: (\w+)", ON_CPUS, 100, "scripts/bench.sh"),
+    "benchmarks/results/cpu.csv": (r"^# commit: (\w+)", ON_CPUS, 130, "scripts/bench.sh"),
 }
 CODE = re.compile(r"\.(hpp|cuh)$")
 

@@ -124,11 +124,10 @@ int run(const settings& chosen) {
     const double taken = median_of(seconds);
     const double large = taken / static_cast<double>(chosen.instances);
     std::cout << "device: " << alone[0].description() << '\n'
-              << chosen.small << " instances, reduced: " << 1e9 * small << " ns each, " << median_of(times) << " s (median of "
-              << times.size() << ")\n"
+              << chosen.small << " instances, reduced: " << 1e9 * small << " ns each, " << median_of(times)
+              << " s (median of " << times.size() << ")\n"
               << chosen.instances << " instances, reduced: " << 1e9 * large << " ns each, " << taken << " s (median of "
-              << seconds.size() << "); "
-              << large / small << " times as long per instance\n"
+              << seconds.size() << "); " << large / small << " times as long per instance\n"
               << "most memory of the host: " << most_memory() << " GB\n"
               << "mean of x: " << all.values("x_end_mean")[0] << '\n';
     if (!chosen.beside.empty()) {

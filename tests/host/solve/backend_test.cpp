@@ -121,8 +121,8 @@ TEST_CASE("steps that a GPU keeps in shared memory find the events and samples o
     double apart = 0;
     std::int64_t other_counts = 0, other_bits = 0;
     for (std::int64_t i = 0; i < 200; ++i) {
-        other_counts += here.integer_accessory(long_chain::crossings)(i) !=
-                        there.integer_accessory(long_chain::crossings)(i);
+        other_counts +=
+            here.integer_accessory(long_chain::crossings)(i) != there.integer_accessory(long_chain::crossings)(i);
         for (int c = 0; c < long_chain::n_state; ++c) {
             apart = std::max(apart, std::abs(here.state(c)(i) - there.state(c)(i)));
             other_bits += here.state(c)(i) != other.state(c)(i);

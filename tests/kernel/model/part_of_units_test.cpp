@@ -9,11 +9,8 @@
 #include "tests/catch.hpp"
 #include "tests/kernel/model/teams.hpp"
 #include "tests/support/device.hpp"
-#include "tests/support/message_of.hpp"
 
 namespace {
-
-using tests::message_of;
 
 constexpr std::int64_t instances = 37;  // the last teams of a warp have none
 
@@ -91,12 +88,4 @@ TEST_CASE("a report says how many threads integrate an instance together") {
     CHECK(team_of(start_of<teams::places<1>>()) == 1);
     CHECK(team_of(start_of<teams::places<8>>()) == (tests::tests_cpu() ? 1 : 8));
     CHECK(team_of(start_of<teams::places<32>>()) == (tests::tests_cpu() ? 1 : 32));
-}
-
-TEST_CASE("a block that is not made of whole warps is refused where teams integrate") {
-    if (tests::tests_cpu()) return;
-    myriad::options options = options_for<teams::places<8>>();
-    options.block_size = 48;
-    CHECK_THAT(message_of([&] { solved_on<myriad::tsitouras_5, teams::places<8>>(tests::test_device(), options); }),
-               Catch::Matchers::Contains("teams of 8 threads integrate an instance together, which need whole warps"));
 }

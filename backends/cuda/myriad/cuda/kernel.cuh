@@ -167,7 +167,7 @@ struct launch_arguments<Model, R, shared_placement::constant_bank> {
 template <class Model, class R>
 constexpr int find_bytes_of_block() {
     if constexpr (team_size < Model >> 1) {
-        return Model::template bytes_of_block<R>;
+        return as_part<Model>::template bytes_of_block<R>;
     } else {
         return 0;
     }
@@ -178,7 +178,7 @@ template <class Model, class Method, class R>
 constexpr int find_bytes_of_thread() {
     if constexpr (team_size < Model >> 1) {
         static_assert(shared_step_bytes<Method, Model, R> == 0, "a team has the shared memory for itself");
-        return Model::template bytes_of_thread<R>;
+        return as_part<Model>::template bytes_of_thread<R>;
     } else {
         return shared_step_bytes<Method, Model, R>;
     }
@@ -227,7 +227,8 @@ __device__ __forceinline__ void integrate_thread(const launch_arguments<Model, R
     if constexpr (placement == shared_placement::shared_memory) shared = detail::stage_shared<Model, Method, R>(shared);
     constexpr int threads = team_size<Model>;
     if constexpr (threads > 1) {
-        Model::stage_tolerances(arguments.ensemble, static_cast<int>(threadIdx.x), static_cast<int>(blockDim.x));
+        as_part<Model>::stage_tolerances(arguments.ensemble, static_cast<int>(threadIdx.x),
+                                         static_cast<int>(blockDim.x));
         __syncthreads();
     }
     using supply = std::conditional_t<costs_differ<Model, Method>, queued_instances<threads>, own_instance<threads>>;

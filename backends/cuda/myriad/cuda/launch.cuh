@@ -128,9 +128,6 @@ private:
                 wanted <= 1024 && traits().max_block_size < wanted
                     ? ", or let the model declare a larger `static constexpr int max_block_size`"
                     : "");
-        require(traits().team == 1 || wanted % 32 == 0, "block_size is ", wanted, ", but teams of ", traits().team,
-                " threads integrate an instance together, which need whole warps", host::cure,
-                "give a multiple of 32, or 0 for the size with the best occupancy");
         // The smallest block size among those that keep most threads resident. Where shared memory limits these, blocks
         // of one warp leave least of it unused; where it has no room for a warp, blocks are parts of one.
         int first = wanted > 0 ? wanted : std::min(keeps_steps_in_shared_memory() ? 32 : 64, most / 32 * 32);

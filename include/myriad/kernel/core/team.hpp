@@ -178,6 +178,10 @@ private:
     using device_integer = std::conditional_t<sizeof(U) == 8, unsigned long long, unsigned>;
 };
 
+/// A model that is the part of one thread: by this name its members are those that users' models do not have.
+template <class Model>
+using as_part = Model;
+
 /// The team that integrates an instance of a model, or of the one of which it is a part.
 template <class Model>
 using team_for = thread_team<team_size<Model>>;
@@ -188,7 +192,7 @@ MYRIAD_FUNCTION int whole_state(int c) {
     if constexpr (team_size<Model> == 1) {
         return c;
     } else {
-        return Model::whole_state(c);
+        return as_part<Model>::whole_state(c);
     }
 }
 

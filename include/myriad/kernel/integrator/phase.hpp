@@ -109,7 +109,7 @@ private:
         const std::int64_t index = s.instance[i];
         MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
         for (int c = 0; c < n; ++c) set_lane(s.data.y[c], i, at(args.state, detail::whole_state<Model>(c), i));
-        if constexpr (team_size < Model >> 1) Model::load_parameters(args, index);
+        if constexpr (team_size < Model >> 1) as_part<Model>::load_parameters(args, index);
         MYRIAD_UNROLL
         for (int c = 0; c < n_parameter<Model>; ++c) set_lane(s.data.parameter[c], i, at(args.parameter, c, i));
         MYRIAD_UNROLL

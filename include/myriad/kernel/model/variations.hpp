@@ -206,17 +206,15 @@ private:
         if constexpr (Directions::carries_accessories) {  // all at once, as most inputs move in none or one of them
             using number = moving_number<Directions, R>;
             const auto moving = [&](auto k) MYRIAD_LAMBDA {
-                return number(y[k], partials<R, Directions::count>::each([&](auto d) MYRIAD_LAMBDA {
-                    return partial<R>(y[n_original * (1 + d) + k]);
-                }));
+                return number(y[k], partials<R, Directions::count>::each(
+                                        [&](auto d) MYRIAD_LAMBDA { return partial<R>(y[n_original * (1 + d) + k]); }));
             };
             const vec<number, n_original> f =
                 Model::template rhs<number>(t, vec<number, n_original>{moving(constant_index<c>{})...},
                                             detail::inputs_along_all<Model, Directions, R>(p));
-            return vec<R, n_state>{
-                (all < n_original
-                     ? f[all % n_original].value
-                     : f[all % n_original].derivative.in[all / n_original - (all >= n_original)].value)...};
+            return vec<R, n_state>{(
+                all < n_original ? f[all % n_original].value
+                                 : f[all % n_original].derivative.in[all / n_original - (all >= n_original)].value)...};
         } else {
             const auto along_direction = [&](auto k) MYRIAD_LAMBDA {
                 constexpr int first = n_original * (1 + decltype(k)::value);

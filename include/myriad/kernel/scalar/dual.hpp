@@ -309,8 +309,7 @@ struct functions<dual<S, Derivative>> {
     static MYRIAD_FUNCTION D pow(const D& x, const D& y) {
         const D of_base = pow_of_base(x, y.value);
         // With a constant exponent, the logarithm of a non-positive base must not spoil the result.
-        return D(of_base.value,
-                 of_base.derivative + scaled_unless_zero(of_base.value * f::log(x.value), y.derivative));
+        return D(of_base.value, of_base.derivative + scaled_unless_zero(of_base.value * f::log(x.value), y.derivative));
     }
     static MYRIAD_FUNCTION D atan2(const D& y, const D& x) {
         const S square = x.value * x.value + y.value * y.value;

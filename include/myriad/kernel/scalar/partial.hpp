@@ -6,8 +6,8 @@
 
 #include <utility>
 
-#include "myriad/kernel/core/static_for.hpp"
 #include "myriad/kernel/core/macros.hpp"
+#include "myriad/kernel/core/static_for.hpp"
 #include "myriad/kernel/scalar/math.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {

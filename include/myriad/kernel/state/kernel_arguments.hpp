@@ -173,7 +173,7 @@ MYRIAD_FUNCTION R relative_tolerance_of(const kernel_arguments<Model, R>& args, 
     if constexpr (team_size<Model> == 1) {
         return args.relative_tolerance[c];
     } else {
-        return Model::template tolerances<R>()[Model::whole_state(c)];
+        return as_part<Model>::template tolerances<R>()[as_part<Model>::whole_state(c)];
     }
 }
 template <class Model, class R>
@@ -181,7 +181,7 @@ MYRIAD_FUNCTION R absolute_tolerance_of(const kernel_arguments<Model, R>& args, 
     if constexpr (team_size<Model> == 1) {
         return args.absolute_tolerance[c];
     } else {
-        return Model::template tolerances<R>()[n_state<whole_of<Model>> + Model::whole_state(c)];
+        return as_part<Model>::template tolerances<R>()[n_state<whole_of<Model>> + as_part<Model>::whole_state(c)];
     }
 }
 

@@ -227,9 +227,9 @@ MYRIAD_FUNCTION void explicit_rk_step(const S& t, const S& h, const S& t1, const
             detail::copy_components(trial.y, argument);
             detail::copy_components(trial.k[stage], detail::evaluate_rhs<Model>(t1, argument, p));
         } else {
-            detail::copy_components(trial.k[stage],
-                                    detail::evaluate_rhs<Model>(
-                                        fma(S(detail::node_operand<Method, stage, R>()), h, t), argument, p));
+            detail::copy_components(
+                trial.k[stage],
+                detail::evaluate_rhs<Model>(fma(S(detail::node_operand<Method, stage, R>()), h, t), argument, p));
         }
         detail::see_stage_before<Method, stage>(trial.k);
         if constexpr (in_memory) MYRIAD_MEMORY_BARRIER;

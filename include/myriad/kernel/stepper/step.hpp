@@ -29,7 +29,7 @@ MYRIAD_FUNCTION void take_trial_step(const S& t, const S& h, const S& t1, const 
     } else {
         static_assert(!has_mass_matrix<Model>,
                       "the model has a mass_matrix, which explicit methods do not take: use rodas_5p");
-        constexpr bool in_memory = shared_step_bytes<Method, Model, S> > 0;
+        constexpr bool in_memory = shared_step_bytes < Method, Model, S >> 0;
         detail::explicit_rk_step<Method, Model, in_memory>(t, h, t1, y, p, trial);
     }
 }
