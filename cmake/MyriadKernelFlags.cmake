@@ -10,9 +10,10 @@ set(myriad_kernel_flags -O3 -ffp-contract=off -fno-math-errno)
 # Runge-Kutta 4 step of Lorenz' equations with three tangents takes 7.5 ns instead of 20 (Zen 4, AVX-512).
 #
 # Nearly all functions are copied into the kernel before they are optimised, and g++ then takes up to two fifths of its
-# time for what later passes find as well (points-to analysis, early value numbering). Without these, kernels of eight
-# models were as fast within 3 %, with equal bits: a small one compiles in 2.0 s of processor time and not 3.2, one of
-# dormand_prince_8 in 16 and not 26, one with seven states and two events in 5.8 and not 6.9 (g++ 12.2, AVX-512).
+# time for what later passes find as well (points-to analysis, early value numbering). Without these, kernels of nine
+# models took 0.92 to 1.03 of the time, with equal bits (Lorenz by Runge-Kutta 4 once 1.10, in calls of 7 ms): a small
+# one compiles in 2.0 s of processor time and not 3.2, one of dormand_prince_8 in 16 and not 26, one with seven states
+# and two events in 5.8 and not 6.9 (g++ 12.2, AVX-512).
 set(myriad_kernel_flags_GNU --param=sra-max-scalarization-size-Ospeed=2048 -fno-tree-pta -fno-tree-fre)
 set(myriad_kernel_flags_Clang -Wno-pass-failed)
 

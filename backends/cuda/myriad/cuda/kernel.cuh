@@ -203,8 +203,7 @@ constexpr bool is_laid_out = sizeof(launch_arguments<Model, R, placement>) ==
 /// threads.
 template <class Model, class Method, class R>
 __device__ __forceinline__ shared_parameters<R> stage_shared(const shared_parameters<R>& from) {
-    extern __shared__ double staged[];  // double: aligned for either real type
-    R* const real = reinterpret_cast<R*>(staged) + bytes_of_block<Model, R> / sizeof(R) +
+    R* const real = static_cast<R*>(memory_of_block()) + bytes_of_block<Model, R> / sizeof(R) +
                     blockDim.x * (bytes_of_thread<Model, Method, R> / sizeof(R));
     auto* const integer = reinterpret_cast<std::int32_t*>(real + n_shared<Model>);
     for (int i = static_cast<int>(threadIdx.x); i < n_shared<Model>; i += static_cast<int>(blockDim.x))

@@ -101,9 +101,7 @@ inline constexpr bool shares_factors =
 template <class Memory, int bytes_of_thread>
 __host__ __device__ __forceinline__ Memory& step_memory_of_thread() {
 #if defined(__CUDA_ARCH__)
-    extern __shared__ double of_block[];  // double: aligned for either real type
-    auto* const bytes = reinterpret_cast<char*>(of_block) + threadIdx.x * bytes_of_thread;
-    return *reinterpret_cast<Memory*>(bytes);
+    return *reinterpret_cast<Memory*>(static_cast<char*>(memory_of_block()) + threadIdx.x * bytes_of_thread);
 #else
     return *static_cast<Memory*>(nullptr);  // never called
 #endif
