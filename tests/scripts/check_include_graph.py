@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: MIT
 """Checks that the layers of the library only point down: folders of headers include each other without a cycle, and
 the kernel body, which both compilers see, includes nothing of the host side, no Eigen and no library that only a host
-has. Of the kernel body, the headers in CUDA_CODE alone ask whether nvcc compiles them."""
+has. Of the kernel body, the headers in CUDA_CODE alone ask whether nvcc compiles them, and none has members that share
+addresses, which nvcc lays out in two ways."""
 import argparse
 import re
 import sys
@@ -33,6 +34,7 @@ CUDA_CODE = {
     "myriad/kernel/stepper/step_memory.hpp",    # the shared memory of a block
 }
 
+NO_UNIQUE_ADDRESS = re.compile(r"^[^/\n]*\[\[no_unique_address\]\]", re.MULTILINE)
 ASKS_FOR_CUDA = re.compile(r"^[ \t]*#(?:[^\n]*\\\n)*[^\n]*\b__(?:CUDA\w*|NVCC)__", re.MULTILINE)
 
 
@@ -88,6 +90,15 @@ def misplaced_cuda_code(texts, cuda_code):
         yield f"CUDA_CODE names {header}, which does not ask whether nvcc compiles it: remove it there"
 
 
+def ambiguous_layouts(texts):
+    """The headers of the kernel body with members that share addresses: nvcc 13 lays such a class out in two ways, one
+    for copies of it and one for its members."""
+    for header, text in texts.items():
+        if layer(header) == "kernel" and NO_UNIQUE_ADDRESS.search(text):
+            yield (f"{header} has a member with [[no_unique_address]]: nvcc copies such a class with another layout "
+                   "than it reads its members with; leave the attribute out, an empty member costs no register")
+
+
 def folder_graph(headers):
     """For each folder, the folders that it includes, each with one such include as an example."""
     graph = {}
@@ -130,7 +141,8 @@ def complaints(roots, cuda_code=frozenset(CUDA_CODE)):
     if not texts:
         return [f"no headers in {', '.join(map(str, roots))}"]
     headers = {header: INCLUDE.findall(text) for header, text in texts.items()}
-    found = [*misplaced_includes(headers), *misplaced_cuda_code(texts, cuda_code)]
+    found = [*misplaced_includes(headers), *misplaced_cuda_code(texts, cuda_code),
+             *ambiguous_layouts(texts)]
     graph = folder_graph(headers)
     cycle = find_cycle(graph)
     if cycle:

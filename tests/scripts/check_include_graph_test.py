@@ -103,6 +103,14 @@ class CheckIncludeGraph(unittest.TestCase):
         self.assert_found({}, "CUDA_CODE names myriad/kernel/core/macros.hpp",
                           code={"myriad/kernel/core/macros.hpp": ""})
 
+    def test_kernel_code_with_members_that_share_addresses(self):
+        self.assert_found({}, "lane.hpp has a member with [[no_unique_address]]",
+                          code={"myriad/kernel/model/lane.hpp": "    [[no_unique_address]] vec<S, 0> accessory;\n"})
+        self.assertEqual(self.complaints_of({}, {
+            "myriad/kernel/model/lane.hpp": "// no [[no_unique_address]] here\n",
+            "myriad/host/core/file.hpp": "    [[no_unique_address]] nothing empty;\n",
+        }), [])
+
 
 if __name__ == "__main__":
     unittest.main()

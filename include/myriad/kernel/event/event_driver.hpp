@@ -168,7 +168,7 @@ private:
     event_memory<Model, R>* memory_;
     event_sides<Model, S> e_;
     fired_events<Model, S> fired_;
-    [[no_unique_address]] trigger_state<Model, S> triggers_;
+    trigger_state<Model, S> triggers_;
 };
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET

@@ -39,9 +39,9 @@ namespace myriad::inline MYRIAD_TARGET {
 template <class Model, class S, bool there>
 struct accessories {
     /// `p.accessory[a]`: real accessories of the instance.
-    [[no_unique_address]] vec<S, detail::n_accessory<Model>> accessory;
+    vec<S, detail::n_accessory<Model>> accessory;
     /// `p.integer_accessory[a]`: its integer accessories.
-    [[no_unique_address]] vec<integer_of<S>, detail::n_integer_accessory<Model>> integer_accessory;
+    vec<integer_of<S>, detail::n_integer_accessory<Model>> integer_accessory;
 };
 /// None, where the model declares that accessories are outputs.
 template <class Model, class S>
@@ -75,7 +75,7 @@ template <class Model, class S>
 struct inputs : accessories<Model, S, !detail::accessories_are_outputs<Model>> {
     using real = real_of<S>;  ///< double or float
     /// The parameters of the instance; `p[k]` is short for `p.parameter[k]`.
-    [[no_unique_address]] vec<S, detail::n_parameter<Model>> parameter;
+    vec<S, detail::n_parameter<Model>> parameter;
     shared_values<Model, real> shared;                  ///< `p.shared[B]`: real values that all instances share
     shared_values<Model, std::int32_t> shared_integer;  ///< `p.shared_integer[i]`: integers that all share
 
@@ -101,7 +101,7 @@ struct lane_data : inputs<Model, S>, accessories<Model, S, accessories_are_outpu
     vec<S, n_state<Model>> y;
     index_of<S> index;
     integer_of<S> phase;
-    [[no_unique_address]] vec<integer_of<S>, n_event<Model>> event_count;
+    vec<integer_of<S>, n_event<Model>> event_count;
 };
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET

@@ -84,8 +84,8 @@ struct team_inputs {
     const R* parameter;
     const R* shared;
     const std::int32_t* shared_integer;
-    [[no_unique_address]] vec<R, 0> accessory;
-    [[no_unique_address]] vec<std::int32_t, 0> integer_accessory;
+    vec<R, 0> accessory;
+    vec<std::int32_t, 0> integer_accessory;
 };
 
 template <class Whole, int threads>

@@ -18,7 +18,7 @@ struct observed_step {
     static constexpr bool bends = !has_own_interpolant<Method> && (Method::order > 4);
 
     step_data<Method, S, n> data;
-    [[no_unique_address]] vec<S, bends ? n : 0> bend;
+    vec<S, bends ? n : 0> bend;
 
     /// State at t + theta h; for a dual theta, with its derivative.
     template <class T>

@@ -47,7 +47,7 @@ struct integration_state {
     mask final_step;  // it ends at t_stop()
 
     stepping_state<Method, S> steps;                   // of the method's `stepping`, which owns it
-    [[no_unique_address]] stop_state<Model, S> stops;  // of `stop_driver`, which owns them
+    stop_state<Model, S> stops;                        // of `stop_driver`, which owns them
 
     // lanes whose phase ends in this iteration of the loop, and how
     mask ended;
