@@ -46,8 +46,8 @@ struct integration_state {
     S h;              // its length, signed
     mask final_step;  // it ends at t_stop()
 
-    stepping_state<Method, S> steps;                   // of the method's `stepping`, which owns it
-    stop_state<Model, S> stops;                        // of `stop_driver`, which owns them
+    stepping_state<Method, S> steps;  // of the method's `stepping`, which owns it
+    stop_state<Model, S> stops;       // of `stop_driver`, which owns them
 
     // lanes whose phase ends in this iteration of the loop, and how
     mask ended;
