@@ -128,9 +128,9 @@ private:
                 wanted <= 1024 && traits().max_block_size < wanted
                     ? ", or let the model declare a larger `static constexpr int max_block_size`"
                     : "");
-        // The smallest block size among those that keep most threads resident. Where shared memory limits these, blocks
-        // of one warp leave least of it unused; where it has no room for a warp, blocks are parts of one.
-        int first = wanted > 0 ? wanted : std::min(keeps_steps_in_shared_memory() ? 32 : 64, most / 32 * 32);
+        // The smallest block size among those that keep most threads resident, as the fewer threads end together, the
+        // sooner others start. Where shared memory has no room for a warp, blocks are parts of one.
+        int first = wanted > 0 ? wanted : std::min(32, most / 32 * 32);
         consider_blocks(first, wanted > 0 ? wanted : most);
         while (facts_.block_size == 0 && wanted == 0 && keeps_steps_in_shared_memory() && first > smallest_block()) {
             first /= 2;

@@ -47,7 +47,7 @@ using whole_of = typename team_of_model<Model>::whole;
 #if defined(__CUDACC__)
 __host__ __device__ __forceinline__ void* memory_of_block() {
 #if defined(__CUDA_ARCH__)
-    extern __shared__ double shared_by_block[];  // double: aligned for either real type
+    extern __shared__ __align__(16) double shared_by_block[];  // so that a thread may load 16 bytes at a time
     return shared_by_block;
 #else
     return nullptr;  // never called

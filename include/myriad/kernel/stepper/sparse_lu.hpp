@@ -71,8 +71,10 @@ struct symbolic_lu {
     }
 };
 
-/// What a factorisation and its solves do, as tables. Entries of the factors are numbered in the order of steps; an
-/// update subtracts from an entry the product of one below a pivot and one right of it.
+/// What a factorisation and its solves do, as tables. Entries of the factors are numbered in the order in which a solve
+/// reads them, so that a GPU's thread loads several at a time: those below the pivots from the first step on, then
+/// those right of the pivots and the pivots themselves from the last step back. An update subtracts from an entry the
+/// product of one below a pivot and one right of it.
 template <int n, int n_lower, int n_upper, int n_update, int n_given>
 struct lu_tables {
     static constexpr int n_entry = n + n_lower + n_upper;
@@ -94,19 +96,23 @@ struct lu_tables {
         for (int s = 0; s < n; ++s) {
             const int k = symbolic.pivot[s];
             pivot[s] = k;
-            diagonal[k] = number[k][k] = static_cast<short>(next++);
             lower_begin[s + 1] = lower_begin[s];
-            upper_begin[s + 1] = upper_begin[s];
-            for (int j = 0; j < n; ++j) {
-                if (!symbolic.right[s].contains(j)) continue;
-                upper_column[upper_begin[s + 1]] = j;
-                upper_entry[upper_begin[s + 1]++] = number[k][j] = static_cast<short>(next++);
-            }
             for (int i = 0; i < n; ++i) {
                 if (!symbolic.below[s].contains(i)) continue;
                 lower_row[lower_begin[s + 1]] = i;
                 lower_entry[lower_begin[s + 1]++] = number[i][k] = static_cast<short>(next++);
             }
+            upper_begin[s + 1] = upper_begin[s] + symbolic.right[s].size();
+        }
+        for (int s = n - 1; s >= 0; --s) {
+            const int k = pivot[s];
+            int u = upper_begin[s];
+            for (int j = 0; j < n; ++j) {
+                if (!symbolic.right[s].contains(j)) continue;
+                upper_column[u] = j;
+                upper_entry[u++] = number[k][j] = static_cast<short>(next++);
+            }
+            diagonal[k] = number[k][k] = static_cast<short>(next++);
         }
         int q = 0;
         for (int s = 0; s < n; ++s) {

@@ -41,6 +41,9 @@ constexpr bool fills_registers() {
     return false;
 }
 
+/// Bytes that a GPU's thread loads from its block's shared memory at a time, if they lie side by side.
+inline constexpr int bytes_loaded_at_once = 16;
+
 /// What a thread has in the shared memory of its block: the stages, and with them the factors if there is room.
 template <class Method, class Model, class R>
 struct stage_memory {
@@ -49,12 +52,13 @@ struct stage_memory {
 };
 template <class Method, class Model, class R>
 struct step_memory : stage_memory<Method, Model, R> {
-    R factor[n_factor_entry<Model>];
+    alignas(bytes_loaded_at_once) R factor[n_factor_entry<Model>];
 };
-/// Bytes from one thread's to the next one's: an odd number of words of R, so that no two threads of a warp meet in a
-/// bank.
-template <class Memory, class R>
-inline constexpr int step_memory_stride = static_cast<int>((sizeof(Memory) / sizeof(R) | 1) * sizeof(R));
+/// Bytes from one thread's to the next one's: an odd number of loads, so that no two of the threads whose loads are
+/// served together meet in a bank.
+template <class Memory>
+inline constexpr int step_memory_stride =
+    static_cast<int>(((sizeof(Memory) + bytes_loaded_at_once - 1) / bytes_loaded_at_once | 1) * bytes_loaded_at_once);
 /// Largest such stride. 1000 rings of 64 states, NVIDIA H100: 63 ms with all 7.5 kB of a thread there, 34 with the
 /// stages alone, 4.6 kB, and 55 without.
 inline constexpr int largest_step_memory_stride = 4800;
@@ -70,14 +74,14 @@ constexpr int shared_step_bytes_of() {
     if constexpr (rosenbrock_method<Method>) {
         if constexpr (loops_over_stages<Method, Model, R>) {
             constexpr int in_registers = static_cast<int>(sizeof(R)) * (n_factor_entry<Model> + 3 * n_state<Model>);
-            constexpr int all = step_memory_stride<step_memory<Method, Model, R>, R>;
-            constexpr int stages = step_memory_stride<stage_memory<Method, Model, R>, R>;
+            constexpr int all = step_memory_stride<step_memory<Method, Model, R>>;
+            constexpr int stages = step_memory_stride<stage_memory<Method, Model, R>>;
             if (in_registers <= register_bytes) return 0;
             if (all <= largest_step_memory_stride) return all;
             if (stages <= largest_step_memory_stride) return stages;
         }
     } else if constexpr (Method::embedded_order > 0 && team_size<Model> == 1) {
-        constexpr int trial = step_memory_stride<trial_step<Method, R, n_state<Model>>, R>;
+        constexpr int trial = step_memory_stride<trial_step<Method, R, n_state<Model>>>;
         if (trial > largest_trial_in_registers && trial <= largest_step_memory_stride) return trial;
     }
 #endif
@@ -95,7 +99,7 @@ inline constexpr int shared_step_bytes = shared_step_bytes_of<Method, Model, R>(
 /// Whether the factors lie there, too.
 template <class Method, class Model, class R>
 inline constexpr bool shares_factors =
-    shared_step_bytes<Method, Model, R> == step_memory_stride<step_memory<Method, Model, R>, R>;
+    shared_step_bytes<Method, Model, R> == step_memory_stride<step_memory<Method, Model, R>>;
 
 /// This thread's, the first in the block's shared memory.
 template <class Memory, int bytes_of_thread>
