@@ -105,7 +105,14 @@ class LeastSquares:
         columns = {}
         for key, values in data.items():
             is_time = key is time or isinstance(key, str) and key in _time_names and key not in components.place
-            columns["t" if is_time else components.component(key)] = np.asarray(values, float)
+            name = "t" if is_time else components.component(key)
+            if name in columns:
+                raise Error(f"data has '{name}' twice: give it once")
+            try:
+                columns[name] = np.asarray(values, float)
+            except (TypeError, ValueError):
+                raise Error(f"data of '{name}' has values that are no numbers: give numbers, NaN where there is none"
+                            ) from None
         times = columns.pop("t", None)
         if times is None:
             raise Error("data has no times: give them as \"t\"")

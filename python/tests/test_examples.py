@@ -34,5 +34,7 @@ def test_example_runs(program, started):
     if program in ("doses.py", "duffing.py", "sbml.py", "xpp.py") or program.startswith("case_studies"):
         picture = place / pathlib.Path(program).with_suffix(".png").name
         assert picture.stat().st_size > 10_000
+    if program == "fit.py":
+        assert (place / "fit_profile.png").stat().st_size > 10_000
     if program == "duffing.py":
         assert "4608 success" in done.stdout
