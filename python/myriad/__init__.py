@@ -6,7 +6,8 @@ from __future__ import annotations
 import builtins as _builtins
 import sys as _sys
 
-from . import _core, cache as cache, numpy_functions as numpy_functions, plots as plots, reduce as reduce
+from . import (_core, cache as cache, designs as designs, numpy_functions as numpy_functions, plots as plots,
+               reduce as reduce)
 from .axes import *  # noqa: F403
 from .function import *  # noqa: F403
 from .cpp_model import CppModel as CppModel
@@ -36,7 +37,7 @@ from .xpp import XppModel as XppModel, read_xpp as read_xpp
 __version__ = _core.version
 
 _public = ["CppModel", "Damage", "Error", "EventChoice", "Interrupted", "Options", "RecordChoice", "Run",
-           "SampleChoice", "SbmlModel", "Study", "StudyResult", "XppModel", "cache", "controls", "methods",
+           "SampleChoice", "SbmlModel", "Study", "StudyResult", "XppModel", "cache", "controls", "designs", "methods",
            "open_study", "plots", "read_antimony", "read_sbml", "read_xpp", "reduce", "solve", "status_names", "study",
            "verify",
            *(name for part in ("axes", "function", "expression", "fit", "grid", "interpolate", "least_squares", "model",

@@ -12,10 +12,11 @@ import numpy as np
 from . import plots
 from .components import by_component, name_of, unknown
 from .descent import Descent, status_names
+from .designs import hypercube
 from .errors import Error
 from .expression import Node
 from .inputs import whole
-from .least_squares import Free, LeastSquares, from_logarithms, logarithms
+from .least_squares import LeastSquares, from_logarithms, logarithms
 from .profile import Profile
 from .student import student_quantile
 
@@ -26,15 +27,6 @@ if TYPE_CHECKING:
     from .run import Run
 
 __all__ = ["Fit", "fit"]
-
-
-def _hypercube(count: int, free: list[Free], seed: int) -> Array:
-    """Points within the bounds, of a Latin hypercube: each of `count` parts of each range has one."""
-    random = np.random.default_rng(seed)
-    parts = np.stack([random.permutation(count) for _ in free], axis=1)
-    places = (parts + random.random(parts.shape)) / count
-    least, most = (logarithms(free, np.array([getattr(f, end) for f in free])) for end in ("least", "most"))
-    return least + places * (most - least)
 
 
 class Fit:
@@ -222,6 +214,7 @@ def fit(model: AnyModel, data: Any, *, free: ByComponent, starts: int | ByCompon
         count = whole(starts, "starts")
         if count < 1:
             raise Error(f"starts is {count}: give at least one")
-        varied = _hypercube(count, problem.free, seed)
+        least, most = (logarithms(problem.free, end) for end in problem.bounds)
+        varied = least + hypercube(count, len(problem.free), np.random.default_rng(seed)) * (most - least)
     limit = whole(iterations, "iterations")
     return Fit(problem, Descent(problem, varied, tolerance).run(limit), varied, limit)

@@ -28,10 +28,10 @@ _time_names = ("t", "time")
 
 
 class Free:
-    """A component that a fit determines: its bounds, and whether its logarithm is what varies."""
+    """A component that varies within bounds, and whether its logarithm is what does."""
 
     def __init__(self, name: str, given: Any) -> None:
-        form = f"free={{{name}: (least, most)}} or free={{{name}: (least, most, \"log\")}}"
+        form = f"{{{name}: (least, most)}} or {{{name}: (least, most, \"log\")}}"
         parts = list(given) if isinstance(given, (tuple, list)) else []
         if len(parts) not in (2, 3) or len(parts) == 3 and parts[2] not in ("log", "linear"):
             raise Error(f"the bounds of '{name}' are {given!r}: give {form}")
