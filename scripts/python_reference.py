@@ -27,7 +27,7 @@ PAGES = {
                      ["model", "symbols", "expression", "interpolate", "table", "tangents", "cpp_model", "sbml",
                       "units", "xpp"]),
     "python_fit": ("Python: sensitivities and fits", "Derivatives of results, and what is fitted to data by them.",
-                   ["sensitivities", "function", "least_squares", "fit", "profile", "designs"]),
+                   ["sensitivities", "function", "least_squares", "fit", "profile", "petab", "designs"]),
     "python_study": ("Python: studies", "Studies, reductions, and results on disk.",
                      ["study", "study_result", "reduce"]),
     "python_tools": ("Python: pictures and the cache", "`myriad.plots`, `run.plot`, and `myriad.cache`.",
