@@ -2,6 +2,7 @@
 # Finds SUNDIALS CVODE, version 6 or 7, as the target myriad::sundials: installed, or in a folder with include/ and lib/
 # that SUNDIALS_DIR (its package folder or the folder itself) or CMAKE_PREFIX_PATH names. Not by SUNDIALS' own package,
 # whose targets name files of the original installation that a relocated copy does not have. Sets myriad_sundials_FOUND.
+# If CVODES is there too, it is the target myriad::cvodes, for programs that do not use CVODE.
 
 set(hints "${SUNDIALS_DIR}" "${SUNDIALS_DIR}/../../.." "${SUNDIALS_ROOT}")
 find_path(MYRIAD_SUNDIALS_INCLUDE_DIR NAMES cvode/cvode.h HINTS ${hints} PATH_SUFFIXES include
@@ -34,4 +35,13 @@ if(myriad_sundials_FOUND)
     add_library(myriad::sundials INTERFACE IMPORTED GLOBAL)
     target_include_directories(myriad::sundials INTERFACE "${MYRIAD_SUNDIALS_INCLUDE_DIR}")
     target_link_libraries(myriad::sundials INTERFACE ${MYRIAD_SUNDIALS_LIBRARIES})
+    find_library(MYRIAD_SUNDIALS_cvodes NAMES sundials_cvodes HINTS ${hints} PATH_SUFFIXES lib)
+    mark_as_advanced(MYRIAD_SUNDIALS_cvodes)
+    if(MYRIAD_SUNDIALS_cvodes)
+        list(TRANSFORM MYRIAD_SUNDIALS_LIBRARIES REPLACE "^.*sundials_cvode[^s].*$" "${MYRIAD_SUNDIALS_cvodes}"
+             OUTPUT_VARIABLE libraries)
+        add_library(myriad::cvodes INTERFACE IMPORTED GLOBAL)
+        target_include_directories(myriad::cvodes INTERFACE "${MYRIAD_SUNDIALS_INCLUDE_DIR}")
+        target_link_libraries(myriad::cvodes INTERFACE ${libraries})
+    endif()
 endif()

@@ -27,7 +27,7 @@ PAGES = {
                      ["model", "symbols", "expression", "interpolate", "table", "tangents", "cpp_model", "sbml",
                       "units", "xpp"]),
     "python_fit": ("Python: sensitivities and fits", "Derivatives of results, and what is fitted to data by them.",
-                   ["sensitivities", "function", "least_squares", "fit"]),
+                   ["sensitivities", "function", "least_squares", "fit", "profile", "petab", "designs"]),
     "python_study": ("Python: studies", "Studies, reductions, and results on disk.",
                      ["study", "study_result", "reduce"]),
     "python_tools": ("Python: pictures and the cache", "`myriad.plots`, `run.plot`, and `myriad.cache`.",
@@ -35,8 +35,9 @@ PAGES = {
 }
 # Classes that public functions return, whose members users call though they do not make them.
 RETURNED = {"run": ["Report"], "grid": ["Sweep"], "axes": ["Axis"], "table": ["Table"], "reduce": ["Reduction"],
-            "tangents": ["WithTangents"], "run_plots": ["Plots"], "device": ["DeviceArray", "DeviceResults"],
-            "expression": ["Expression", "Condition"]}
+            "tangents": ["WithTangents"], "run_plots": ["Plots"], "profile": ["Profile"],
+            "designs": ["Design", "Indices"],
+            "device": ["DeviceArray", "DeviceResults"], "expression": ["Expression", "Condition"]}
 
 
 class Entity:

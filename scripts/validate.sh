@@ -12,7 +12,8 @@ usage() {
 Usage: scripts/validate.sh [--device cpu|cuda] [--mutations] [--quick] [--deps DIR] [--output DIR] [--jobs N] [--help]
 
 Compares every method on every problem with SUNDIALS CVODE and closed forms, and writes DIR/report.csv, DIR/report.md
-and DIR/tolerance.png, DIR/work.png (default of DIR: results/validation/DEVICE).
+and DIR/tolerance.png, DIR/work.png (default of DIR: results/validation/DEVICE); on the CPU, sensitivities with those of
+CVODES too, DIR/sensitivities.md.
 
   --device cpu     installs what is missing (as root or with sudo), builds in build/release; compares with the results
                    in validation/gpu/results.csv too, if they are there (default)
@@ -67,6 +68,7 @@ build=build/validate-$device
 say "Building in $build"
 quietly "$output/configure.log" cmake --preset "$preset" -B "$build" "${options[@]}"
 targets=(validate)
+if [[ $device == cpu ]]; then targets+=(validate_sensitivities); fi
 if [[ $mutations == yes ]]; then targets+=(validate_mutated_methods); fi
 quietly "$output/build.log" cmake --build "$build" --parallel "$jobs" --target "${targets[@]}"
 
@@ -80,6 +82,10 @@ say "Validating on $device"
 status=0
 "$program" --device "$device" --output "$output" "${program_options[@]}" || status=$?
 ((status < 2)) || exit "$status"
+
+if [[ $device == cpu ]]; then
+    "$build/validation/sensitivities/validate_sensitivities" | tee "$output/sensitivities.md" || status=1
+fi
 
 images=""
 if python=$(plotting_python); then

@@ -30,6 +30,14 @@ for name, least in (("birth", 0.4812), ("hunt", 0.02483), ("death", 0.9260), ("g
     assert abs(fit.best[name] / least - 1) < 1e-3, (name, fit.best[name])
 assert fit.status[fit.index] == "converged" and not fit.at_bound and not fit.without_influence
 
+# snippet: profile
+profile = fit.profile()
+print(profile)
+profile.plot()[0].figure.savefig("fit_profile.png")
+fit.waterfall().figure.savefig("fit_waterfall.png")
+# end of snippet
+assert all(low < fit.best[name] < high for name, (low, high) in profile.intervals.items()) and not profile.notes
+
 # snippet: scipy
 problem = fit.problem  # or my.least_squares(model, data, free=...)
 residuals = problem.residuals([0.5, 0.02, 0.9, 0.03, 35, 4])  # in the order of problem.names

@@ -6,7 +6,8 @@ from __future__ import annotations
 import builtins as _builtins
 import sys as _sys
 
-from . import _core, cache as cache, numpy_functions as numpy_functions, plots as plots, reduce as reduce
+from . import (_core, cache as cache, designs as designs, numpy_functions as numpy_functions, plots as plots,
+               reduce as reduce)
 from .axes import *  # noqa: F403
 from .function import *  # noqa: F403
 from .cpp_model import CppModel as CppModel
@@ -21,6 +22,7 @@ from .model import *  # noqa: F403
 from .options import (EventChoice as EventChoice, Options as Options, RecordChoice as RecordChoice,
                       SampleChoice as SampleChoice)
 from .run import Interrupted as Interrupted, Run as Run
+from .petab import PetabProblem as PetabProblem, read_petab as read_petab
 from .sbml import SbmlModel as SbmlModel, read_antimony as read_antimony, read_sbml as read_sbml
 from .sensitivities import *  # noqa: F403
 from .solve import solve as solve
@@ -35,10 +37,10 @@ from .xpp import XppModel as XppModel, read_xpp as read_xpp
 
 __version__ = _core.version
 
-_public = ["CppModel", "Damage", "Error", "EventChoice", "Interrupted", "Options", "RecordChoice", "Run",
-           "SampleChoice", "SbmlModel", "Study", "StudyResult", "XppModel", "cache", "controls", "methods",
-           "open_study", "plots", "read_antimony", "read_sbml", "read_xpp", "reduce", "solve", "status_names", "study",
-           "verify",
+_public = ["CppModel", "Damage", "Error", "EventChoice", "Interrupted", "Options", "PetabProblem", "RecordChoice",
+           "Run", "SampleChoice", "SbmlModel", "Study", "StudyResult", "XppModel", "cache", "controls", "designs",
+           "methods", "open_study", "plots", "read_antimony", "read_petab", "read_sbml", "read_xpp", "reduce", "solve",
+           "status_names", "study", "verify",
            *(name for part in ("axes", "function", "expression", "fit", "grid", "interpolate", "least_squares", "model",
                                "sensitivities", "symbols", "table", "tangents", "units")
              for name in _sys.modules[f"{__name__}.{part}"].__all__)]

@@ -1,132 +1,44 @@
 # SPDX-License-Identifier: MIT
 """Fits of a model to data by the method of Levenberg and Marquardt from many starts, all of which are integrated as one
-ensemble in every iteration."""
+ensemble in every iteration; what the result is worth."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from statistics import NormalDist
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .components import by_component
+from . import plots
+from .components import by_component, name_of, unknown
+from .descent import Descent, status_names
+from .designs import hypercube
 from .errors import Error
+from .expression import Node
 from .inputs import whole
-from .least_squares import Free, LeastSquares, from_logarithms, logarithms
+from .least_squares import LeastSquares, from_logarithms, logarithms
+from .profile import Profile
+from .student import student_quantile
 
 if TYPE_CHECKING:
-    from .hints import AnyModel, Array, ByComponent
+    from matplotlib.axes import Axes
+
+    from .hints import AnyModel, Array, ByComponent, SomeComponents
     from .run import Run
 
 __all__ = ["Fit", "fit"]
-
-_running, _converged, _stopped, _failed = range(4)
-_names = ("running", "converged", "iterations", "failed")
-_largest_damping = 1e16  # beyond, a step changes nothing
-
-
-def _hypercube(count: int, free: list[Free], seed: int) -> Array:
-    """Points within the bounds, of a Latin hypercube: each of `count` parts of each range has one."""
-    random = np.random.default_rng(seed)
-    parts = np.stack([random.permutation(count) for _ in free], axis=1)
-    places = (parts + random.random(parts.shape)) / count
-    least, most = (logarithms(free, np.array([getattr(f, end) for f in free])) for end in ("least", "most"))
-    return least + places * (most - least)
-
-
-class _Descent:
-    """Levenberg's and Marquardt's method for many starts within bounds; damping as of Nielsen (1999), scaled by the
-    largest diagonal of J^T J so far (More 1978). Components at a bound, whose gradient leads out of it, rest."""
-
-    def __init__(self, problem: LeastSquares, varied: Array, tolerance: float) -> None:
-        self.problem, self.tolerance = problem, tolerance
-        self.least, self.most = (logarithms(problem.free, end) for end in problem.bounds)
-        self.varied = np.clip(varied, self.least, self.most)
-        self.residuals, self.jacobian = self._evaluate(self.varied)
-        self.loss = _loss(self.residuals)
-        count = len(varied)
-        self.state = np.where(np.isfinite(self.loss), _running, _failed)
-        self.damping, self.growth = np.full(count, 1e-3), np.full(count, 2.0)
-        self.scale = np.zeros(varied.shape)
-        self.iterations = np.zeros(count, int)
-
-    def _evaluate(self, varied: Array) -> tuple[Array, Array]:
-        """Residuals, and their derivatives by what varies."""
-        values = from_logarithms(self.problem.free, varied)
-        residuals, jacobian = self.problem.evaluate(values)
-        inner = np.stack([values[:, i] if f.log else np.ones(len(values))
-                          for i, f in enumerate(self.problem.free)], axis=1)
-        return residuals, jacobian * inner[:, None, :]
-
-    def step(self) -> bool:
-        """One iteration of all starts that go on. Returns whether there were any."""
-        on = np.flatnonzero(self.state == _running)
-        if not on.size:
-            return False
-        u, r, jac, loss = self.varied[on], self.residuals[on], self.jacobian[on], self.loss[on]
-        normal = np.einsum("srp,srq->spq", jac, jac)
-        gradient = np.einsum("srp,sr->sp", jac, r)
-        diagonal = np.einsum("spp->sp", normal)
-        self.scale[on] = np.maximum(self.scale[on], diagonal)
-        scale = np.where(self.scale[on] > 0, self.scale[on], 1.0)
-        rests = ((u <= self.least) & (gradient >= 0)) | ((u >= self.most) & (gradient <= 0)) | (diagonal == 0)
-        # the cosine of the angle between the residuals and each column
-        size = np.sqrt(diagonal * (2 * loss)[:, None])
-        slant = np.where(rests | (size == 0), 0.0, np.abs(gradient) / np.where(size == 0, 1.0, size))
-        flat = slant.max(axis=1) <= 1e-9
-        moves = ~rests
-        matrix = normal * (moves[:, :, None] & moves[:, None, :])
-        count = matrix.shape[-1]
-        matrix[:, range(count), range(count)] += self.damping[on][:, None] * scale + rests * scale
-        move = np.linalg.solve(matrix, -(gradient * moves)[..., None])[..., 0]
-        to = np.clip(u + move, self.least, self.most)
-        move = to - u
-        predicted = -np.einsum("sp,sp->s", gradient, move) - 0.5 * np.einsum("sp,spq,sq->s", move, normal, move)
-        still = flat | (np.abs(move) <= 1e-12 * (1e-12 + np.abs(u))).all(axis=1)
-        self.state[on[still]] = _converged
-        goes = np.flatnonzero(~still)
-        if goes.size:
-            self._take(on[goes], to[goes], predicted[goes])
-        return True
-
-    def _take(self, on: Array, to: Array, predicted: Array) -> None:
-        """Tries the steps, and takes those that lessen the loss."""
-        residuals, jacobian = self._evaluate(to)
-        new, old = _loss(residuals), self.loss[on]
-        self.iterations[on] += 1
-        with np.errstate(divide="ignore", invalid="ignore"):
-            ratio = (old - new) / predicted
-        better = (new < old) & np.isfinite(jacobian).all(axis=(1, 2))
-        taken = on[better]
-        self.varied[taken], self.loss[taken] = to[better], new[better]
-        self.residuals[taken], self.jacobian[taken] = residuals[better], jacobian[better]
-        factor = np.maximum(1 / 3, 1 - (2 * np.clip(ratio[better], 0, 1) - 1) ** 3)
-        self.damping[taken] = np.maximum(self.damping[taken] * factor, 1e-15)
-        self.growth[taken] = 2
-        refused = on[~better]
-        self.damping[refused] *= self.growth[refused]
-        self.growth[refused] *= 2
-        done = better & (old - new <= self.tolerance * old) & (predicted <= self.tolerance * old)
-        self.state[on[done]] = _converged
-        self.state[on[self.damping[on] > _largest_damping]] = _converged  # no shorter step lessens the loss
-
-
-def _loss(residuals: Array) -> Array:
-    with np.errstate(over="ignore", invalid="ignore"):
-        loss = 0.5 * np.sum(residuals * residuals, axis=1)
-    return np.where(np.isfinite(loss), loss, np.inf)
 
 
 class Fit:
     """The outcome of `fit`. Arrays have one value for each start, in the order of the starts; what has no start is of
     the best one."""
 
-    def __init__(self, problem: LeastSquares, descent: _Descent, starts: Array) -> None:
+    def __init__(self, problem: LeastSquares, descent: Descent, starts: Array, iterations: int) -> None:
         self.problem = problem  #: its `LeastSquares`
         values = from_logarithms(problem.free, descent.varied)
         self.loss: Array = descent.loss  #: half the sum of squares of (model - data) / sigma; infinite: no solution
-        self.status = [_names[s] for s in descent.state]  #: "converged", "iterations" if there were too few, "failed"
+        #: "converged", "iterations" if there were too few, "failed"
+        self.status = [status_names[s] for s in descent.state]
         self.iterations: Array = descent.iterations  #: that each start took
         self.starts = _by_name(problem, from_logarithms(problem.free, starts))  #: where each began, by name
         self.values = _by_name(problem, values)  #: where each ended, by name
@@ -136,20 +48,23 @@ class Fit:
                         "my.least_squares(...).run(values).report, and give narrower bounds")
         self.best = {name: float(of[self.index]) for name, of in self.values.items()}  #: the best values, by name
         self.residuals: Array = descent.residuals[self.index]  #: in the order of `problem.labels`
+        self._limits = iterations, descent.tolerance
         self._assess(descent)
 
-    def _assess(self, descent: _Descent) -> None:
+    def _assess(self, descent: Descent) -> None:
         """Fisher information, standard errors, and what the fit cannot tell."""
         problem, free = self.problem, self.problem.free
-        jacobian, varied = descent.jacobian[self.index], descent.varied[self.index]
+        self._jacobian = jacobian = descent.jacobian[self.index]
+        self._varied = varied = descent.varied[self.index]
         self.notes: list[str] = []  #: what to know of the result
         length = np.linalg.norm(jacobian, axis=0)
         #: names of those on which no result that was compared depends
         self.without_influence = [f.name for f, size in zip(free, length) if size == 0]
         #: names of those that ended at a bound
-        self.at_bound = [f.name for f, u, least, most in zip(free, varied, descent.least, descent.most)
+        self.at_bound = [f.name for f, u, least, most in zip(free, varied, descent.least[0], descent.most[0])
                          if (u == least or u == most) and f.name not in self.without_influence]
         degrees = jacobian.shape[0] - (len(free) - len(self.without_influence))
+        self._degrees = np.inf if problem.has_sigma else degrees
         #: the variance of the residuals, by which information is divided: 1 if `sigma` was given
         self.variance = 1.0 if problem.has_sigma else 2 * self.loss[self.index] / degrees if degrees > 0 else np.nan
         information = jacobian.T @ jacobian
@@ -191,18 +106,56 @@ class Fit:
         if degrees <= 0 and not problem.has_sigma:
             self.notes.append("there are no more data than free components: give sigma= for confidence intervals")
 
-    def confidence(self, level: float = 0.95) -> dict[str, tuple[float, float]]:
-        """Confidence intervals by name, from the Fisher information: of the logarithm, where that varied. They hold for
-        many data; NaN where the data do not determine a component."""
+    def _width(self, level: float) -> float:
+        """Half the width of a confidence interval, in standard errors."""
         if not 0 < level < 1:
             raise Error(f"the level of confidence is {level!r}: give a number between 0 and 1, as 0.95")
-        width = NormalDist().inv_cdf((1 + level) / 2) * self._deviations
+        return student_quantile((1 + level) / 2, self._degrees)
+
+    def confidence(self, level: float = 0.95) -> dict[str, tuple[float, float]]:
+        """Confidence intervals by name, from the Fisher information: of the logarithm, where that varied. They hold for
+        models that are nearly linear within them, or else many data, as `profile` shows; NaN where the data do not
+        determine a component."""
+        width = self._width(level) * self._deviations
         intervals = {}
         for f, w in zip(self.problem.free, width):
             value = self.best[f.name]
             intervals[f.name] = (value * float(np.exp(-w)), value * float(np.exp(w))) if f.log else (
                 value - float(w), value + float(w))
         return intervals
+
+    def profile(self, names: SomeComponents | None = None, *, level: float = 0.95, points: int = 8) -> Profile:
+        """Profile likelihoods of the free components, or of some: the least loss at fixed values of each, from the best
+        values outwards until it rises to the threshold of a confidence interval, or to a bound. Descents from all
+        points of all profiles are integrated as one ensemble.
+
+        level    of confidence of the intervals
+        points   on either side of the best value, to begin with
+
+        Raises `Error` if there are neither `sigma` nor residuals that could tell the deviations of the data."""
+        free = self.problem.names
+        if names is None:
+            chosen = [name for name in free if name not in self.without_influence]
+        else:
+            listed: Iterable[Any] = [names] if isinstance(names, (str, Node)) else names
+            chosen = [name_of(name) for name in listed]
+        for name in chosen:
+            if name not in free:
+                raise unknown(name, free, "free component of the fit")
+        if not chosen:
+            raise Error("there is nothing to profile: name at least one free component that has influence")
+        if whole(points, "points") < 1:
+            raise Error(f"points is {points}: give at least one on either side")
+        if not self.variance > 0:
+            raise Error("the residuals do not tell how far data deviate from the model, as there are no more data than "
+                        "free components, or none deviate: give the fit sigma=")
+        return Profile(self, chosen, level, self._width(level), points, *self._limits, self._varied,
+                       self._jacobian)
+
+    def waterfall(self, *, axes: Axes | None = None, **style: Any) -> Any:
+        """Draws the losses of all starts in ascending order: steps are minima, and how many starts reach the lowest
+        tells whether there were enough. Further arguments go to matplotlib's `plot`. Returns the axes."""
+        return plots.waterfall(self.loss, [s == "converged" for s in self.status], axes=axes, **style)
 
     def run(self) -> Run:
         """A run of the best values, with its sensitivities."""
@@ -261,10 +214,7 @@ def fit(model: AnyModel, data: Any, *, free: ByComponent, starts: int | ByCompon
         count = whole(starts, "starts")
         if count < 1:
             raise Error(f"starts is {count}: give at least one")
-        varied = _hypercube(count, problem.free, seed)
-    descent = _Descent(problem, varied, tolerance)
-    for _ in range(whole(iterations, "iterations")):
-        if not descent.step():
-            break
-    descent.state[descent.state == _running] = _stopped
-    return Fit(problem, descent, varied)
+        least, most = (logarithms(problem.free, end) for end in problem.bounds)
+        varied = least + hypercube(count, len(problem.free), np.random.default_rng(seed)) * (most - least)
+    limit = whole(iterations, "iterations")
+    return Fit(problem, Descent(problem, varied, tolerance).run(limit), varied, limit)

@@ -28,10 +28,10 @@ _time_names = ("t", "time")
 
 
 class Free:
-    """A component that a fit determines: its bounds, and whether its logarithm is what varies."""
+    """A component that varies within bounds, and whether its logarithm is what does."""
 
     def __init__(self, name: str, given: Any) -> None:
-        form = f"free={{{name}: (least, most)}} or free={{{name}: (least, most, \"log\")}}"
+        form = f"{{{name}: (least, most)}} or {{{name}: (least, most, \"log\")}}"
         parts = list(given) if isinstance(given, (tuple, list)) else []
         if len(parts) not in (2, 3) or len(parts) == 3 and parts[2] not in ("log", "linear"):
             raise Error(f"the bounds of '{name}' are {given!r}: give {form}")
@@ -105,7 +105,14 @@ class LeastSquares:
         columns = {}
         for key, values in data.items():
             is_time = key is time or isinstance(key, str) and key in _time_names and key not in components.place
-            columns["t" if is_time else components.component(key)] = np.asarray(values, float)
+            name = "t" if is_time else components.component(key)
+            if name in columns:
+                raise Error(f"data has '{name}' twice: give it once")
+            try:
+                columns[name] = np.asarray(values, float)
+            except (TypeError, ValueError):
+                raise Error(f"data of '{name}' has values that are no numbers: give numbers, NaN where there is none"
+                            ) from None
         times = columns.pop("t", None)
         if times is None:
             raise Error("data has no times: give them as \"t\"")

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The pictures that a sweep is usually looked at in, by matplotlib: bifurcation diagram, map over two parameters, time
-series, phase portrait, statuses. The functions draw arrays, of NumPy or xarray, into `axes`, or a new figure, and
-return the axes. `run.plot` draws the results of a run by name. The program `myriad` draws by a copy of this file.
+series, phase portrait, statuses; and those of a fit: waterfall and profile likelihood. The functions draw arrays, of
+NumPy or xarray, into `axes`, or a new figure, and return the axes. `run.plot` draws the results of a run by name. The
+program `myriad` draws by a copy of this file.
 """
 
 from __future__ import annotations
@@ -202,4 +203,65 @@ def statuses(status: Any, names: Sequence[str], *, axes: Axes | None = None) -> 
     axes.margins(x=0.25)
     axes.set_xlim(left=0)
     axes.set_ylim(-0.6, len(present) - 0.4)
+    return axes
+
+
+def panels(count: int) -> Any:
+    """The axes of a new figure of so many panels, at most four in a row."""
+    down = -(-count // 4)
+    across = -(-count // down)
+    shown = _axes_of(None, figsize=(2.4 * across, 2.2 * down), nrows=down, ncols=across, squeeze=False).ravel()
+    for spare in shown[count:]:
+        spare.remove()
+    return shown[:count]
+
+
+def waterfall(loss: Any, converged: Any, *, axes: Axes | None = None, **style: Any) -> Any:
+    """Losses of the starts of a fit in ascending order, a plateau for each minimum; `converged` tells for each whether
+    it has arrived. Infinite losses, of starts without a solution, are counted at the axis. Further arguments go to
+    matplotlib's `plot`."""
+    loss, converged = _numbers(loss, "loss", (1,)), _numbers(converged, "converged", (1,)).astype(bool)
+    if loss.shape != converged.shape:
+        raise Error(f"loss has {loss.size} values and converged {converged.size}: give one for each start")
+    order = np.argsort(loss, kind="stable")
+    order = order[np.isfinite(loss[order])]
+    failed = len(loss) - len(order)
+    axes = _axes_of(axes, figsize=(5, 3.4))
+    place = np.arange(1, len(order) + 1)
+    unfinished = not converged[order].all()
+    for there, label, marker in ((converged[order], "converged", "o"), (~converged[order], "out of iterations", "x")):
+        if there.any():
+            axes.plot(place[there], loss[order][there], **{
+                "linestyle": "none", "marker": marker, "markersize": 4, "color": _colours[0 if marker == "o" else 4],
+                "label": label if unfinished else None, **style})
+    if unfinished:
+        axes.legend(frameon=False)
+    if len(order) and loss[order[0]] > 0:
+        _logarithmic(axes.yaxis, axes.set_yscale)
+    axes.set_xlabel("starts" + (f" ({failed} without a solution)" if failed else ""))
+    axes.set_ylabel("loss")
+    return axes
+
+
+def profile(x: Any, loss: Any, threshold: float, *, logarithmic: bool = False, xlabel: str | None = None,
+            ylabel: str | None = None, axes: Axes | None = None, **style: Any) -> Any:
+    """The profile likelihood of a component: the least loss over its values x, and the threshold below which these are
+    in the confidence interval. With `logarithmic`, so is a wide axis. Further arguments go to matplotlib's `plot`."""
+    xlabel, ylabel = _label(x, xlabel), "loss" if ylabel is None else ylabel
+    x, loss = _numbers(x, "x", (1,)), _numbers(loss, "loss", (1,))
+    if x.shape != loss.shape:
+        raise Error(f"x has {x.size} values and loss {loss.size}: give one loss for each value")
+    axes = _axes_of(axes, figsize=(4, 3.2))
+    axes.plot(x, np.where(np.isfinite(loss), loss, np.nan), **{
+        "color": _colours[0], "marker": "o", "markersize": 2.5, "linewidth": 1.1, **style})
+    axes.axhline(threshold, color=_colours[4], linestyle="--", linewidth=1)
+    least = loss.min()
+    axes.set_ylim(least - 0.1 * (threshold - least), threshold + 1.2 * (threshold - least))
+    near = x[loss <= threshold + 1.2 * (threshold - least)]
+    if len(near) > 1:
+        axes.set_xlim(near.min(), near.max())
+    if logarithmic and near.max() > 3 * near.min() > 0:
+        _logarithmic(axes.xaxis, axes.set_xscale)
+    axes.set_xlabel(xlabel)
+    axes.set_ylabel(ylabel)
     return axes

@@ -258,7 +258,10 @@ class Run(Mapping):
 
     def _output(self, expression: Node) -> Array:
         """The values of an expression: at the samples, or where records are, or at the end."""
-        place = self._place_of(expression)
+        return self._output_at(self._place_of(expression), expression)
+
+    def _output_at(self, place: str | None, expression: Node) -> Array:
+        """The values of an expression at a place that `_place_of` has told."""
         times: Any
         if place == "sample":
             times, states = self.sample_times, self.samples

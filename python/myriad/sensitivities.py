@@ -17,6 +17,7 @@ from .expression import Node, symbols_of
 from .extended import Extended
 from .inputs import real
 from .statuses import status_names
+from .symbols import symbol as symbol_of
 from .symbols import time
 
 if TYPE_CHECKING:
@@ -191,13 +192,13 @@ class Sensitivities(Mapping[Any, Any]):
             symbol = symbols[number]
             kind, name = symbol.value
             if kind == "state":
-                inner: Any = self._by(name, k)
+                inner: Any = run._output_at(place, symbol_of("state", f"{name}_by_{k}"))
             elif symbol is time:
                 inner = run[f"time_by_{k}"] if place is None else 0.0
             else:
                 inner = float(name == k)
-            total = total + run._output(partial) * inner
-        return total
+            total = total + run._output_at(place, partial) * inner
+        return total if place else self._defined(total)
 
     def __iter__(self) -> Iterator[str]:
         components = self._run._components

@@ -31,8 +31,11 @@ def started(tmp_path_factory):
 def test_example_runs(program, started):
     place, done = started[program].result()
     assert done.returncode == 0, done.stderr
-    if program in ("doses.py", "duffing.py", "sbml.py", "xpp.py") or program.startswith("case_studies"):
+    if (program in ("doses.py", "duffing.py", "global_sensitivity.py", "sbml.py", "xpp.py")
+            or program.startswith("case_studies")):
         picture = place / pathlib.Path(program).with_suffix(".png").name
         assert picture.stat().st_size > 10_000
+    if program == "fit.py":
+        assert (place / "fit_profile.png").stat().st_size > 10_000
     if program == "duffing.py":
         assert "4608 success" in done.stdout

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Fits of models to data, compared with SciPy's and with linear regression."""
+"""Fits of models to data, compared with SciPy's and with linear regression; profile likelihoods in closed form."""
 
 import numpy as np
 import pytest
 
 import myriad as my
+from myriad.student import student_quantile
 
 x, w = my.states("x w")
 k, a, B, unused = my.parameters("k a B unused")
@@ -65,22 +66,129 @@ def test_a_fit_that_ends_at_a_bound_says_so():
     assert any("ended at a bound of B" in note for note in fit.notes)
 
 
+# With k = 0, x = x(0) + B t.
+line = {"free": {x: (-10, 10), B: (-10, 10)}, "sweep": {**others, k: 0}, "start": {w: 0}, "starts": 3}
+
+
 def test_intervals_of_a_straight_line_are_those_of_linear_regression():
-    # With k = 0, x = x(0) + B t.
+    stats = pytest.importorskip("scipy.stats")
     rng = np.random.default_rng(3)
     values = 1 + 0.5 * times + 0.1 * rng.standard_normal(times.size)
     values[4] = np.nan
     there = ~np.isnan(values)
-    fit = my.fit(model, {"t": times, x: values}, free={x: (-10, 10), B: (-10, 10)}, sweep={**others, k: 0},
-                 start={w: 0}, starts=3)
+    fit = my.fit(model, {"t": times, x: values}, **line)
     design = np.stack([np.ones(there.sum()), times[there]], axis=1)
     best, (squares,), *_ = np.linalg.lstsq(design, values[there], rcond=None)
     np.testing.assert_allclose([fit.best["x"], fit.best["B"]], best, rtol=1e-7)
     covariance = np.linalg.inv(design.T @ design) * squares / (there.sum() - 2)
     np.testing.assert_allclose(fit.covariance, covariance, rtol=1e-6)
     np.testing.assert_allclose(fit.fisher_information, np.linalg.inv(covariance), rtol=1e-6)
-    low, high = fit.confidence(0.95)["B"]
-    assert (high - low) / 2 == pytest.approx(1.959964 * np.sqrt(covariance[1, 1]), rel=1e-5)
+    half = stats.t.ppf(0.975, there.sum() - 2) * np.sqrt(covariance[1, 1])
+    np.testing.assert_allclose(fit.confidence(0.95)["B"], [best[1] - half, best[1] + half], rtol=1e-5)
+
+
+def test_intervals_of_few_data_are_students():
+    stats = pytest.importorskip("scipy.stats")
+    values = np.array([1.1, 1.4, 2.2, 2.3])
+    fit = my.fit(model, {"t": [1, 2, 3, 4], x: values}, **line)
+    regression = stats.linregress([1, 2, 3, 4], values)
+    half = stats.t.ppf(0.95, 2) * regression.stderr
+    np.testing.assert_allclose(fit.confidence(0.9)["B"], [regression.slope - half, regression.slope + half], rtol=1e-5)
+    known = my.fit(model, {"t": [1, 2, 3, 4], x: values}, sigma=0.3, **line)
+    half = stats.norm.ppf(0.95) * 0.3 / np.sqrt(5)  # sum of (t - 2.5)^2
+    np.testing.assert_allclose(known.confidence(0.9)["B"], [regression.slope - half, regression.slope + half],
+                               rtol=1e-5)
+
+
+def test_quantiles_of_students_distribution_are_scipys():
+    stats = pytest.importorskip("scipy.stats")
+    for degrees in (1, 2, 3, 4, 5, 30, 31, 1000, 99_999):
+        for probability in (0.5, 0.75, 0.975, 0.99999):
+            assert student_quantile(probability, degrees) == pytest.approx(stats.t.ppf(probability, degrees), rel=1e-9,
+                                                                           abs=1e-12)
+    assert student_quantile(0.975, np.inf) == pytest.approx(1.959963984540054)
+    assert np.isnan(student_quantile(0.975, 0))
+
+
+def test_the_profile_of_a_linear_model_is_a_parabola():
+    values = 1 + 0.5 * times + 0.1 * np.random.default_rng(3).standard_normal(times.size)
+    for sigma in (None, 0.2):
+        fit = my.fit(model, {"t": times, x: values}, sigma=sigma, **line)
+        profile = fit.profile(level=0.9)
+        for i, name in enumerate(fit.problem.names):
+            away = profile.values[name] - fit.best[name]
+            assert (np.diff(away) > 0).all() and away.size >= 17
+            parabola = fit.loss[fit.index] + 0.5 * fit.variance * away**2 / fit.covariance[i, i]
+            np.testing.assert_allclose(profile.loss[name], parabola, rtol=1e-7)
+            # the other component is where the regression line has it
+            other = 1 - i
+            np.testing.assert_allclose(profile.components[name][:, other], fit.best[fit.problem.names[other]]
+                                       + away * fit.covariance[0, 1] / fit.covariance[i, i], rtol=1e-5)
+            np.testing.assert_allclose(profile.intervals[name], fit.confidence(0.9)[name], rtol=1e-5)
+        assert profile.notes == []
+
+
+def test_intervals_of_a_profile_do_not_depend_on_what_varies():
+    # x = 0.2 + B t: those of B are symmetric about it, also when its logarithm varies, by a factor of 20.
+    values = 0.2 + 0.05 * times[::6] + 0.1 * np.random.default_rng(1).standard_normal(5)
+    call = {"sweep": {**others, k: 0}, "start": {x: 0.2, w: 0}, "sigma": 0.1, "starts": 3}
+    fit = my.fit(model, {"t": times[::6], x: values}, free={B: (1e-4, 10, "log")}, **call)
+    profile = fit.profile("B")
+    half = 1.959964 * 0.1 / np.sqrt(np.sum(times[::6]**2))
+    np.testing.assert_allclose(profile.intervals["B"], [fit.best["B"] - half, fit.best["B"] + half], rtol=1e-5)
+    assert fit.confidence()["B"][1] > fit.best["B"] + 1.1 * half
+    np.testing.assert_allclose(profile.loss["B"] - fit.loss[fit.index],
+                               0.5 * ((profile.values["B"] - fit.best["B"]) / half * 1.959964)**2, atol=1e-6)
+
+
+def test_a_profile_tells_what_the_data_do_not_bound():
+    # a k is determined alone, and a may be between 0.1 and 10: k between 0.07, which is below its bound, and 7.
+    fit = my.fit(model, measured(), free={k: (0.1, 20), a: (0.1, 10)}, sweep={B: 0.4, unused: 0}, start={x: 2, w: 0},
+                 starts=3)
+    product = my.fit(model, measured(), free={k: (0.1, 20)}, sweep={B: 0.4, **others}, start={x: 2, w: 0}, starts=3)
+    profile = fit.profile(k)
+    low, high = profile.intervals["k"]
+    assert low == -np.inf and list(profile.values) == ["k"]
+    assert high == pytest.approx(10 * product.profile().intervals["k"][1], rel=1e-3)
+    note, = profile.notes
+    assert "do not bound k from below" in note and "the bound 0.1" in note
+    assert "[-inf, " in str(profile) and note in str(profile)
+
+
+def test_a_profile_below_the_fit_says_so():
+    fit = my.fit(model, {"t": times, x: 1 + 0.5 * times + 0.1 * np.cos(7 * times)}, iterations=1,
+                 **{**line, "starts": {x: [5.0], B: [-3.0]}})
+    note, = fit.profile().notes
+    assert "a profile found the loss" in note and "more starts=" in note
+
+
+def test_profiles_that_cannot_be_are_refused():
+    fit = my.fit(model, measured(), free=free, starts=3, **usual)
+    for names, changed, message in ((["z"], {}, "'z' is no free component of the fit"),
+                                    (None, {"level": 1}, "the level of confidence is 1"),
+                                    (None, {"points": 0}, "points is 0"), ([], {}, "nothing to profile")):
+        with pytest.raises(my.Error, match=message):
+            fit.profile(names, **changed)
+    two = my.fit(model, {"t": [1, 2], x: [1, 2]}, **line)
+    with pytest.raises(my.Error, match="give the fit sigma="):
+        two.profile()
+
+
+def test_a_waterfall_has_the_losses_in_order_and_counts_what_failed():
+    pytest.importorskip("matplotlib").use("Agg")
+    from matplotlib import pyplot
+
+    explosive = my.model({x: k * x * x}, name="explosive")
+    t = np.array([0.5, 0.8, 1.0])
+    fit = my.fit(explosive, {"t": t, x: 1 / (2 - 0.5 * t) + [0, 1e-3, 0]}, free={k: (0.1, 10)},
+                 starts={k: [0.2, 8.0, 0.4]}, start={x: 0.5})
+    axes = fit.waterfall()
+    drawn, = axes.lines
+    assert drawn.get_ydata().tolist() == sorted(fit.loss[[0, 2]]) and drawn.get_xdata().tolist() == [1, 2]
+    assert axes.get_xlabel() == "starts (1 without a solution)" and axes.get_yscale() == "log"
+    panels = my.fit(model, measured(), free=free, starts=3, **usual).profile().plot()
+    assert [a.get_xlabel() for a in panels] == ["k", "B", "x"] and all(len(a.lines) == 2 for a in panels)
+    pyplot.close("all")
 
 
 def test_parameters_without_influence_and_mere_products_are_named():
@@ -106,6 +214,8 @@ good = {"t": [1, 2, 3], x: [1, 1, 1]}
     ({"t": [1, np.nan, 3], x: [1, 1, 1]}, {}, "data has the time nan"),
     ({"t": [0, 0, 0], x: [1, 1, 1]}, {}, "all times of data are 0"),
     ({"t": [1, 2, 3], x: [1, np.inf, 1]}, {}, "infinite values"),
+    ({"t": [1, 2, 3], x: ["a", "b", "c"]}, {}, "data of 'x' has values that are no numbers"),
+    ({"t": [1, 2, 3], x: [1, 1, 1], "x": [1, 1, 1]}, {}, "data has 'x' twice"),
     ([1, 2, 3], {}, "data is a list"),
     (good, {"free": {}}, "free= names no component"),
     (good, {"free": {k: 1}}, "the bounds of 'k' are 1"),

@@ -123,3 +123,23 @@ def test_the_functions_for_arrays_are_there_after_import_myriad():
     script = "import myriad; print(myriad.plots.bifurcation.__name__)"
     told = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
     assert told.stdout == "bifurcation\n", told.stderr
+
+
+def test_waterfall_shows_which_starts_have_not_arrived():
+    axes = plots.waterfall([3.0, np.inf, 1.0, 2.0], [True, False, True, False])
+    arrived, on_the_way = axes.lines
+    assert arrived.get_xydata().tolist() == [[1, 1], [3, 3]] and on_the_way.get_xydata().tolist() == [[2, 2]]
+    assert axes.get_legend() is not None and axes.get_xlabel() == "starts (1 without a solution)"
+    with pytest.raises(my.Error, match="loss has 2 values and converged 1"):
+        plots.waterfall([1, 2], [True])
+
+
+def test_profile_is_logarithmic_over_a_wide_range_alone():
+    wide, narrow = np.geomspace(0.01, 1, 9), np.linspace(0.9, 1.1, 9)
+    loss = 1 + np.linspace(-2, 2, 9)**2
+    assert plots.profile(wide, loss, 4.0, logarithmic=True).get_xscale() == "log"
+    axes = plots.profile(narrow, loss, 4.0, logarithmic=True, xlabel="k")
+    assert axes.get_xscale() == "linear" and axes.get_xlabel() == "k"
+    assert axes.lines[1].get_ydata()[0] == 4
+    with pytest.raises(my.Error, match="x has 9 values and loss 8"):
+        plots.profile(wide, loss[1:], 4.0)

@@ -132,3 +132,24 @@ def test_stiff_methods_have_the_sensitivities_of_robertsons_reactions():
             f = values[state]
             expected = (8 * (f[2] - f[1]) - (f[3] - f[0])) / (12 * near[k][2])
             np.testing.assert_allclose(run.sensitivity[state, k], expected, rtol=5e-6)
+
+
+def test_an_output_by_a_parameter_that_it_has_as_a_factor_has_its_derivatives_at_samples():
+    # As many instances as samples, which must not be taken for each other.
+    pytest.importorskip("libsbml")
+    import sbml_models as sbml
+
+    model = my.read_sbml(sbml.document([
+        sbml.compartment("c"), sbml.species("A", concentration=2.0), sbml.species("C", concentration=1.0),
+        sbml.parameter("k", 0.5), sbml.parameter("scale", 3.0), sbml.variable("seen"), sbml.variable("both"),
+        sbml.always("seen", "scale * A"), sbml.always("both", "scale * A * C"),
+        sbml.reaction("loss", "A ->", "k * A * c"), sbml.reaction("other", "C ->", "0.1 * C * c")]))
+    rates, scales, times = np.array([0.5, 0.7, 1.0]), np.array([3.0, 4.0, 5.0]), np.array([0.5, 1.0, 2.0])
+    sweep = {"k": rates, "scale": scales}
+    call = {"time": (0, 2), "sensitivities": ["k", "scale"], **tight}
+    run = my.solve(model, sweep, samples=times, **call)
+    decay = np.exp(-rates[:, None] * times)
+    np.testing.assert_allclose(run.sensitivity["seen", "scale"], 2 * decay, rtol=1e-8)
+    np.testing.assert_allclose(run.sensitivity["seen", "k"], -2 * scales[:, None] * times * decay, rtol=1e-8)
+    both = my.solve(model, sweep, samples={"times": times, "states": ["A"]}, **call)  # C at the end alone
+    np.testing.assert_allclose(both.sensitivity["both", "k"], -4 * scales * np.exp(-2 * rates - 0.2), rtol=1e-8)

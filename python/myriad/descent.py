@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: MIT
+"""Levenberg's and Marquardt's method for many starts at once, all of which are one ensemble in every iteration."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .least_squares import LeastSquares, from_logarithms, logarithms
+
+if TYPE_CHECKING:
+    from .hints import Array
+
+_running, _converged, _stopped, _failed = range(4)
+status_names = ("running", "converged", "iterations", "failed")
+_largest_damping = 1e16  # beyond, a step changes nothing
+
+
+class Descent:
+    """Levenberg's and Marquardt's method for many starts within bounds; damping as of Nielsen (1999), scaled by the
+    largest diagonal of J^T J so far (More 1978). Components at a bound, whose gradient leads out of it, rest.
+
+    Arrays have a row for each start: of `varied`, which are the values or logarithms that vary, and of the columns that
+    `pinned` gives, one for each start, which keep their values."""
+
+    def __init__(self, problem: LeastSquares, varied: Array, tolerance: float, pinned: Array | None = None) -> None:
+        self.problem, self.tolerance = problem, tolerance
+        self.least, self.most = (np.tile(logarithms(problem.free, end), (len(varied), 1)) for end in problem.bounds)
+        self.varied = np.clip(varied, self.least, self.most)
+        if pinned is not None:
+            place = np.arange(len(varied)), pinned
+            self.least[place] = self.most[place] = self.varied[place]
+        self.residuals, self.jacobian = self._evaluate(self.varied)
+        self.loss = _loss(self.residuals)
+        count = len(varied)
+        self.state = np.where(np.isfinite(self.loss), _running, _failed)
+        self.damping, self.growth = np.full(count, 1e-3), np.full(count, 2.0)
+        self.scale = np.zeros(varied.shape)
+        self.iterations = np.zeros(count, int)
+
+    def _evaluate(self, varied: Array) -> tuple[Array, Array]:
+        """Residuals, and their derivatives by what varies."""
+        values = from_logarithms(self.problem.free, varied)
+        residuals, jacobian = self.problem.evaluate(values)
+        inner = np.stack([values[:, i] if f.log else np.ones(len(values))
+                          for i, f in enumerate(self.problem.free)], axis=1)
+        return residuals, jacobian * inner[:, None, :]
+
+    def run(self, iterations: int) -> Descent:
+        """Iterates until no start goes on, or so many times."""
+        for _ in range(iterations):
+            if not self._step():
+                break
+        self.state[self.state == _running] = _stopped
+        return self
+
+    def _step(self) -> bool:
+        """One iteration of all starts that go on. Returns whether there were any."""
+        on = np.flatnonzero(self.state == _running)
+        if not on.size:
+            return False
+        u, r, jac, loss = self.varied[on], self.residuals[on], self.jacobian[on], self.loss[on]
+        least, most = self.least[on], self.most[on]
+        normal = np.einsum("srp,srq->spq", jac, jac)
+        gradient = np.einsum("srp,sr->sp", jac, r)
+        diagonal = np.einsum("spp->sp", normal)
+        self.scale[on] = np.maximum(self.scale[on], diagonal)
+        scale = np.where(self.scale[on] > 0, self.scale[on], 1.0)
+        rests = ((u <= least) & (gradient >= 0)) | ((u >= most) & (gradient <= 0)) | (diagonal == 0)
+        # the cosine of the angle between the residuals and each column
+        size = np.sqrt(diagonal * (2 * loss)[:, None])
+        slant = np.where(rests | (size == 0), 0.0, np.abs(gradient) / np.where(size == 0, 1.0, size))
+        flat = slant.max(axis=1) <= 1e-9
+        moves = ~rests
+        matrix = normal * (moves[:, :, None] & moves[:, None, :])
+        count = matrix.shape[-1]
+        matrix[:, range(count), range(count)] += self.damping[on][:, None] * scale + rests * scale
+        move = np.linalg.solve(matrix, -(gradient * moves)[..., None])[..., 0]
+        to = np.clip(u + move, least, most)
+        move = to - u
+        predicted = -np.einsum("sp,sp->s", gradient, move) - 0.5 * np.einsum("sp,spq,sq->s", move, normal, move)
+        still = flat | (np.abs(move) <= 1e-12 * (1e-12 + np.abs(u))).all(axis=1)
+        self.state[on[still]] = _converged
+        goes = np.flatnonzero(~still)
+        if goes.size:
+            self._take(on[goes], to[goes], predicted[goes])
+        return True
+
+    def _take(self, on: Array, to: Array, predicted: Array) -> None:
+        """Tries the steps, and takes those that lessen the loss."""
+        residuals, jacobian = self._evaluate(to)
+        new, old = _loss(residuals), self.loss[on]
+        self.iterations[on] += 1
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratio = (old - new) / predicted
+        better = (new < old) & np.isfinite(jacobian).all(axis=(1, 2))
+        taken = on[better]
+        self.varied[taken], self.loss[taken] = to[better], new[better]
+        self.residuals[taken], self.jacobian[taken] = residuals[better], jacobian[better]
+        factor = np.maximum(1 / 3, 1 - (2 * np.clip(ratio[better], 0, 1) - 1) ** 3)
+        self.damping[taken] = np.maximum(self.damping[taken] * factor, 1e-15)
+        self.growth[taken] = 2
+        refused = on[~better]
+        self.damping[refused] *= self.growth[refused]
+        self.growth[refused] *= 2
+        done = better & (old - new <= self.tolerance * old) & (predicted <= self.tolerance * old)
+        self.state[on[done]] = _converged
+        self.state[on[self.damping[on] > _largest_damping]] = _converged  # no shorter step lessens the loss
+
+
+def _loss(residuals: Array) -> Array:
+    with np.errstate(over="ignore", invalid="ignore"):
+        loss = 0.5 * np.sum(residuals * residuals, axis=1)
+    return np.where(np.isfinite(loss), loss, np.inf)
