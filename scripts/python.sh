@@ -12,7 +12,7 @@ environment=build/python-environment
 
 usage() {
     cat <<END
-Usage: scripts/python.sh [--required] [--help] [PYTEST ARGUMENT...]
+Usage: scripts/python.sh [--required] [--others] [--help] [PYTEST ARGUMENT...]
 
 Builds the wheel of the Python package into $wheels, with the tag of the oldest systems that it runs on, which
 auditwheel finds, installs it with what its tests need in a fresh virtual environment, $environment, checks
@@ -22,16 +22,19 @@ installed.
 
 Options:
   --required  exit status 1 instead of 77
+  --others    also tests of work with other packages (JAX, Dask, SALib and more), whose download takes minutes
   --all       an argument of pytest: all models for all GPUs by NVRTC, which takes minutes
   --help      this text
 END
 }
 
 missing_status=77
+extras=(test)
 while (($#)); do
     case $1 in
         --help | -h) usage; exit 0 ;;
         --required) missing_status=1 ;;
+        --others) extras+=(test-others) ;;
         *) break ;;
     esac
     shift
@@ -42,8 +45,9 @@ rm -rf "$wheels" "$environment"
 mkdir -p "$wheels"
 pip=("$environment/bin/python" -m pip --quiet --disable-pip-version-check --retries 1 --timeout 20)
 mapfile -t packages < <(python3 -c '
-import tomllib
-print(*tomllib.load(open("pyproject.toml", "rb"))["project"]["optional-dependencies"]["test"], sep="\n")')
+import sys, tomllib
+extras = tomllib.load(open("pyproject.toml", "rb"))["project"]["optional-dependencies"]
+print(*(package for extra in sys.argv[1:] for package in extras[extra]), sep="\n")' "${extras[@]}")
 if ! { python3 -m venv "$environment" &&
     "${pip[@]}" install scikit-build-core nanobind numpy nvidia-cuda-nvrtc pytest-xdist "${packages[@]}"; } \
     >"$environment.log" 2>&1; then

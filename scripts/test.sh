@@ -22,7 +22,8 @@ Steps that run without options: what shows that a build is right.
   python    the Python package: its wheel is built, installed in a fresh virtual environment, and tested (skipped where
             the packages of PyPI that it is built with cannot be installed)
 
-With --full also these. Steps run in the order ci, programs, python, and then as they stand here.
+With --full, python tests work with other packages too, JAX and Dask among them, and there are these steps. All run in
+the order ci, programs, python, and then as they stand here.
   programs  in the build of ci: examples, benchmarks, validation, projects outside that use the library, every public
             header by itself, compile times
   docs      the documentation as a site: warnings are errors, links within it lead somewhere (skipped where Sphinx
@@ -48,13 +49,14 @@ END
 
 steps=("${usual_steps[@]}")
 every_kernel=no
+other_packages=no
 jobs=$(nproc)
 while (($#)); do
     case $1 in
         --help | -h) usage; exit 0 ;;
         --quick) steps=(ci) ;;
-        --full) steps=("${full_steps[@]}") ;;
-        --all) steps=("${all_steps[@]}") every_kernel=yes ;;
+        --full) steps=("${full_steps[@]}") other_packages=yes ;;
+        --all) steps=("${all_steps[@]}") other_packages=yes every_kernel=yes ;;
         --only)
             (($# > 1)) || usage_error "--only needs steps: ${all_steps[*]}"
             IFS=, read -r -a wanted <<<"$2"
@@ -179,9 +181,10 @@ run_step() {
             fi ;;
         python)
             local status=0 log=build/python.log
-            local all=()
-            if [[ $every_kernel == yes ]]; then all=(--all); fi
-            quietly "$log" scripts/python.sh "${all[@]}" || status=$?
+            local more=()
+            if [[ $other_packages == yes ]]; then more=(--others); fi
+            if [[ $every_kernel == yes ]]; then more+=(--all); fi
+            quietly "$log" scripts/python.sh "${more[@]}" || status=$?
             if ((status == 77)); then
                 say "python: skipped, $(tail -n 1 "$log")"
                 summary+=("python: SKIPPED, the package was not tested: see $log")
