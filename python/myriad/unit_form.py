@@ -16,6 +16,11 @@ if TYPE_CHECKING:
     from .units import Units
 
 
+# What a unit has by these names, beside those that begin like its own variables.
+_members = {"unit", "other", "publish", "publication", "n_publication", "n_unit_state", "couplings",
+            "threads_per_instance"}
+
+
 class _NotAlike(Exception):
     """The equations of two units differ in more than the numbers of the units."""
 
@@ -157,8 +162,10 @@ def unit_form(model: Model) -> UnitForm | None:
             model.mass_matrix is not None or any(assignments for _, assignments in model._hooks):
         return None
     names = [name.rpartition("_")[0] for name in model.states[:len(model.states) // units.count]]
-    if any(name in names or name.startswith(("unit_", "sum_", "published_")) for name in model.component_names):
-        return None  # names that its functions use
+    if set(names) & set(model.component_names) or any(
+            name in _members or name.startswith(("unit_", "sum_", "published_")) for name in [
+                *names, *model.component_names]):
+        return None
     try:
         return UnitForm(model, units, names)
     except _NotAlike:

@@ -161,6 +161,12 @@ def test_units_with_more_than_equations_are_written_out_for_gpus(more):
     assert unit_form(model) is None and model.device_source("cash_karp", "double") == model.source()
 
 
+@pytest.mark.parametrize("name", ["publish", "sum_3", "unit", "threads_per_instance", "x"])
+def test_units_with_names_that_a_unit_has_itself_are_written_out_for_gpus(name):
+    x, k = my.units(20).state("x"), my.parameter(name)
+    assert unit_form(my.model({x: -k * x})) is None
+
+
 def test_units_that_are_not_alike_are_written_out_for_gpus():
     units = my.units(20)
     x = units.state("x")
