@@ -25,6 +25,9 @@ struct benchmark_case {
 std::vector<benchmark_case> lorenz_cases();
 /// Lorenz 96 with 4 to 512 states.
 std::vector<benchmark_case> lorenz96_cases();
+/// Seven stars with near collisions.
+benchmark_case pleiades_case();
+benchmark_case van_der_pol_case();
 benchmark_case keller_miksis_case();
 benchmark_case relief_valve_case();
 benchmark_case duffing_events_case();

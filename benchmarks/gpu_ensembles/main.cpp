@@ -125,6 +125,8 @@ std::vector<benchmark_case> all_cases() {
     all.push_back(schedule_case());
     for (benchmark_case& what : stiff_cases()) all.push_back(std::move(what));
     for (benchmark_case& what : lorenz96_cases()) all.push_back(std::move(what));
+    all.push_back(pleiades_case());
+    all.push_back(van_der_pol_case());
     return all;
 }
 

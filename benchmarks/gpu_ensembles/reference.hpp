@@ -70,6 +70,14 @@ inline void set_errors(measurement& m, std::vector<double> errors) {
     m.median_error = median(std::move(errors));
 }
 
+/// All but the largest tenth of the errors, of instances in which small ones grow; all if one is NaN.
+inline std::vector<double> without_largest_tenth(std::vector<double> errors) {
+    if (std::any_of(errors.begin(), errors.end(), [](double e) { return e != e; })) return errors;
+    std::sort(errors.begin(), errors.end());
+    errors.resize(errors.size() - errors.size() / 10);
+    return errors;
+}
+
 /// One phase of the 64 compared instances of an ensemble of `size` on the device and on the CPU: for each, the
 /// difference in its worst component, over max(1, |value|); NaN if they ended differently.
 template <class Method, class Model>

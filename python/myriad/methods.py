@@ -16,6 +16,7 @@ Control = Literal["pi_control", "pid_control", "rms_norm", "mixed_scale", "autom
 methods: tuple[str, ...] = get_args(Method)  #: the names of methods
 controls: tuple[str, ...] = get_args(Control)  #: the names of choices of step-size control
 fixed_step = ("runge_kutta_4",)
+stiff = ("rosenbrock_23", "rodas_5p")  #: those that solve linear systems
 
 default = "tsitouras_5"  # docs/methods.md#the-default
 

@@ -18,9 +18,11 @@ from .errors import Error, at, users_line
 from .expression import (Node, as_condition, as_number, draws, evaluate, integer, is_sympy, real, symbols_of, text,
                          to_real, vector, walk)
 from .mass_matrix import left_sides, read_mass_matrix
+from .methods import stiff
 from .parse import from_sympy, parse, parse_equations, sympy_name
 from .table import element_name, tables_of
-from .units import spread
+from .unit_form import unit_form
+from .units import only_units, spread, together
 from .whole_numbers import check_constants
 
 if TYPE_CHECKING:
@@ -32,6 +34,8 @@ if TYPE_CHECKING:
 __all__ = ["model", "event", "stop", "Model", "Event", "Stop", "phase_maximum", "phase_minimum", "time_of_maximum",
            "time_of_minimum", "integral"]
 
+# As most_states_of_one_thread in the C++ library.
+_of_one_thread = {"double": 16, "float": 24}
 _directions = ("rising", "falling", "either", "none")
 
 
@@ -257,6 +261,7 @@ class Model(kinds.ComponentNames):
                     f"the equations of a model are {type(equations).__name__}")
             raise Error(f"{what}{at(self.line)}: give a dictionary "
                         "{state: derivative}, a function f(t, y, ...) or a string \"x' = v; v' = -x\"")
+        self.units_of_states = only_units(equations)
         equations = spread(equations, "equations", self.line)
         targets, rhs = [], []
         for key in equations:
@@ -281,6 +286,9 @@ class Model(kinds.ComponentNames):
             ranked = sorted(zip(targets, rhs), key=lambda pair: order.index(id(pair[0])) if id(pair[0]) in order else
                             len(order))
             targets, rhs = [t for t, _ in ranked], [e for _, e in ranked]
+        elif self.units_of_states is not None:  # one unit after the other
+            n = self.units_of_states.count
+            targets, rhs = [t for i in range(n) for t in targets[i::n]], [e for i in range(n) for e in rhs[i::n]]
         return targets, rhs
 
     def _real(self, value: object, what: str) -> Expression:
@@ -486,6 +494,9 @@ class Model(kinds.ComponentNames):
         for symbol in dict.fromkeys(declared + found):
             if symbol.value[0] in components:
                 components[symbol.value[0]].append(symbol.value[1])
+        if self.units_of_states is not None:
+            for kind in ("parameter", "shared"):
+                components[kind] = together(components[kind], self.units_of_states.count)
         missing = [n for n in components["state"] if n not in self.states]
         if missing:
             symbol = next(s for s in found + declared if s.value == ("state", missing[0]))
@@ -585,6 +596,16 @@ class Model(kinds.ComponentNames):
         if self._source is None:
             self._source = self.cpp(name)
         return self._source, name
+
+    def device_source(self, method: str, precision: str) -> tuple[str, str]:
+        """The same for a GPU. Coupled units that are alike, with more states than the registers of a thread hold, are
+        written as such there, for teams of threads."""
+        text, name = self.source()
+        threads = None if self.units_of_states is None else self.units_of_states.threads_per_instance
+        if method in stiff or threads == 1 or threads is None and len(self.states) <= _of_one_thread[precision]:
+            return text, name
+        form = unit_form(self)
+        return (text if form is None else form.source(name)), name
 
     @property
     def hash(self) -> str:

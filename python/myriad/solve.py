@@ -20,6 +20,7 @@ from .grid import Sweep
 from .inputs import Along, by_name, numbers, whole, whole_numbers
 from .mass_matrix import check_method
 from .methods import default, fixed_step, method_type
+from .model import Model
 from .options import Options, SolveArguments
 from .per_phase import prepared
 from .progress import ProgressDisplay
@@ -185,7 +186,8 @@ def kernel_for(device: str, model: AnyModel, components: Components, method: str
     if interpreted:
         raise Error("a model is interpreted on the CPU alone: leave out interpreted=, or give device=\"cpu\"")
     names = components.names
-    return nvrtc.kernel(*model.source(), method_type(method, control, sampled), precision,
+    source = model.device_source(method, precision) if isinstance(model, Model) else model.source()
+    return nvrtc.kernel(*source, method_type(method, control, sampled), precision,
                         tuple(len(names[kind]) for kind in kinds.shared), int(device.partition(":")[2]),
                         bool(components.generated),
                         lambda library: tape.give_model(library, model, components, method)), names

@@ -27,23 +27,30 @@ class UnitVector(Vector):
     """A component of all units: `x[i]` is that of unit i. It may be a key of a model's equations and assignments, with
     an array of one value for each unit, or with one value for all."""
 
+    units: Units  # of components as they were made, not of parts of them
+
     def __hash__(self) -> int:  # type: ignore[override]
         return id(self)
 
 
-def units(count: int) -> Units:
-    """`count` units that are alike: `ring = myriad.units(14)`, `x, v = ring.states("x v")`."""
+def units(count: int, *, threads_per_instance: int | None = None) -> Units:
+    """`count` units that are alike: `ring = myriad.units(14)`, `x, v = ring.states("x v")`. On a GPU, so many threads
+    integrate an instance together, 1, 2, 4, 8, 16 or 32; without a number as many as suit the number of states."""
     if isinstance(count, bool) or not isinstance(count, (int, np.integer)) or count < 1:
         raise Error(f"there are {count!r} units{at(users_line())}: give their number, as in myriad.units(14)")
-    return Units(int(count))
+    if threads_per_instance is not None and (isinstance(threads_per_instance, bool)
+                                             or threads_per_instance not in (1, 2, 4, 8, 16, 32)):
+        raise Error(f"threads_per_instance is {threads_per_instance!r}{at(users_line())}: the threads divide a warp; "
+                    "give 1, 2, 4, 8, 16 or 32, or leave it out")
+    return Units(int(count), threads_per_instance)
 
 
 class Units:
     """Units that are alike, and what each of them has. Their components are arrays over the units; those of unit 3 of
     the states "x v" are called x_3 and v_3."""
 
-    def __init__(self, count: int) -> None:
-        self.count = count
+    def __init__(self, count: int, threads_per_instance: int | None = None) -> None:
+        self.count, self.threads_per_instance = count, threads_per_instance
 
     def __len__(self) -> int:
         return self.count
@@ -53,7 +60,9 @@ class Units:
 
     def _of_each(self, kind: str, name: Any, type: str = real) -> UnitVector:
         sym.check_name(name, sym.a(kind))
-        return vector([sym.symbol(kind, f"{name}_{i}", type) for i in range(self.count)]).view(UnitVector)
+        made = vector([sym.symbol(kind, f"{name}_{i}", type) for i in range(self.count)]).view(UnitVector)
+        made.units = self
+        return made
 
     def _several(self, kind: str, names: Names) -> tuple[UnitVector, ...]:
         return tuple(self._of_each(kind, name) for name in sym.names(names))
@@ -200,6 +209,27 @@ class Coupling:
 def one_by_one(chosen: Iterable[Any]) -> list[Any]:
     """Chosen components with those of all units one by one."""
     return [one for key in chosen for one in (key if isinstance(key, UnitVector) else [key])]
+
+
+def only_units(equations: Mapping[Any, Any]) -> Units | None:
+    """The units whose states have these equations; None if other states have equations too."""
+    all_units = {getattr(key, "units", None) if isinstance(key, UnitVector) else None for key in equations}
+    return all_units.pop() if len(all_units) == 1 else None
+
+
+def of_units(names: Iterable[str], count: int) -> list[str]:
+    """The names without number of components that each of so many units has."""
+    names = set(names)
+    bases = sorted({name.removesuffix("_0") for name in names if name.endswith("_0")})
+    return [base for base in bases if all(f"{base}_{i}" in names for i in range(count))]
+
+
+def together(names: Iterable[str], count: int) -> list[str]:
+    """The same names, with components that each of so many units has one behind the other."""
+    names = list(names)
+    first = {f"{base}_{i}": f"{base}_0" for base in of_units(names, count) for i in range(count)}
+    every = {base: [name for name in first if first[name] == base] for base in first.values()}
+    return list(dict.fromkeys(one for name in names for one in every.get(first.get(name, ""), [name])))
 
 
 def spread(given: Mapping[Any, Any], what: str, line: tuple[str, int] | None) -> dict[Any, Any]:

@@ -302,6 +302,7 @@ void bind_precision(nb::module_& m, const char* ensemble_name, const char* repor
         .def_ro("matrix", &all::matrix)
         .def_prop_ro("registers", [](const all& r) { return r.kernel.registers; })
         .def_prop_ro("block_size", [](const all& r) { return r.kernel.block_size; })
+        .def_prop_ro("threads_per_instance", [](const all& r) { return r.kernel.threads_per_instance; })
         .def_ro("notes", &all::notes)
         .def_ro("interrupted", &all::interrupted)
         .def_prop_ro("failed", [](const all& r) { return r.failed(); })

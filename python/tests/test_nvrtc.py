@@ -9,6 +9,7 @@ import shutil
 import struct
 import subprocess
 
+import numpy as np
 import pytest
 
 import example_models
@@ -44,6 +45,13 @@ def remainders():
                     accessories={n: 0}, after_step={n: n + 1}, finalise={n: n * n // 3 - n % -5, a: n / 2 % 0.3})
 
 
+def ring():
+    """Units that a team of threads integrates."""
+    x, v = (ring := my.units(20)).states("x v")
+    A = ring.full_coupling("A", np.ones((20, 20)))
+    return my.model({x: v, v: -ring.parameter("k") * np.roll(x, 1) + A @ np.sin(x)})
+
+
 # What is compiled for each method: models with every kind of hook and event, outputs along the solution, tables.
 cases = [
     (example_models.duffing, "cash_karp", (), False, "double"),
@@ -56,6 +64,7 @@ cases = [
     (lyapunov, "tsitouras_5", (), False, "double"),
     (epidemic, "cash_karp", (), False, "float"),
     (remainders, "tsitouras_5", (), False, "double"),
+    (ring, "tsitouras_5", ("rms_norm",), True, "double"),
     (example_models.continuation, "rodas_5p", ("pid_control", "mixed_scale"), True, "double"),
 ]
 models = (*example_models.headers, test_cpp.every_operation, epidemic)
@@ -67,7 +76,7 @@ architectures = (75, 80, 90, 100, 103)
 def source_of(case, edit=lambda header: header):
     model, method, control, dense, real = case
     made = model()
-    header, struct = made.source()
+    header, struct = made.device_source(method, real) if isinstance(made, my.Model) else made.source()
     shared = len(made.shared) * (8 if real == "double" else 4) + 4 * len(made.shared_integers)
     return nvrtc.source_of(edit(header), struct, method_type(method, control, dense), real,
                            nvrtc.placement(shared, 232_448))
@@ -136,6 +145,13 @@ def test_all_methods_hooks_and_events_compile(request):
     wanted = [(case, a) for case in cases for a in (architectures if of_all else (90,))]
     found = all_of(by_nvrtc, [*wanted, *((case, 90) for case in every_method if of_all)])
     assert all(0 < registers < 256 for registers, _ in found)
+
+
+def test_units_beyond_the_registers_of_a_thread_are_compiled_for_teams(monkeypatch):
+    case = ring, "tsitouras_5", (), False, "double"
+    stack_of_team = by_nvrtc(case)[1]
+    monkeypatch.setattr(my.Model, "device_source", lambda model, method, precision: model.source())
+    assert stack_of_team < 128 and by_nvrtc(case)[1] > 512
 
 
 def generating():

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 import myriad as my
+from myriad.unit_form import unit_form
 
 n = 12
 rng = np.random.default_rng(3)
@@ -27,9 +28,9 @@ def test_a_coupling_is_the_product_with_its_matrix(couple, matrix):
     x, v = units.states("x v")
     A = couple(units)
     model = my.model({x: v, v: A @ np.sin(x) - 0.5 * v})
-    assert model.states == [f"x_{i}" for i in range(n)] + [f"v_{i}" for i in range(n)]
-    np.testing.assert_allclose(model.derivatives(0.3, np.concatenate([x0, v0])),
-                               np.concatenate([v0, matrix @ np.sin(x0) - 0.5 * v0]), rtol=1e-12, atol=1e-12)
+    assert model.states == [name for i in range(n) for name in (f"x_{i}", f"v_{i}")]
+    np.testing.assert_allclose(model.derivatives(0.3, np.stack([x0, v0], axis=1).ravel()),
+                               np.stack([v0, matrix @ np.sin(x0) - 0.5 * v0], axis=1).ravel(), rtol=1e-12, atol=1e-12)
 
 
 def test_models_with_other_matrices_have_the_same_code():
@@ -47,7 +48,7 @@ def test_equations_have_a_value_for_each_unit_or_one_for_all():
     model = my.model({x: -c, v: [k[0] * x[2], x[0] + v[1], 7]})
     assert model.parameters == ["c", "k_0"]
     given = {"c": 2.0, "k_0": 3.0}
-    assert list(model.derivatives(0.0, [1, 2, 3, 4, 5, 6], **given)) == [-2, -2, -2, 9, 6, 7]
+    assert list(model.derivatives(0.0, [1, 4, 2, 5, 3, 6], **given)) == [-2, 9, -2, 6, -2, 7]
 
 
 def test_hooks_events_and_summaries_of_units_are_written_out():
@@ -80,6 +81,7 @@ def test_hooks_events_and_summaries_of_units_are_written_out():
     (lambda u: u.events([1, 2], name="e"), "the events e have shape (2,)"),
     (lambda u: u.state("x y"), "'x y' is no name for a state"),
     (lambda u: my.units(0), "there are 0 units"),
+    (lambda u: my.units(3, threads_per_instance=3), "threads_per_instance is 3"),
     (lambda u: my.model({u.state("x"): [1, 2]}), "equations has values of shape (2,) for x_0 to x_2"),
     (lambda u: my.model({u.state("x"): 1, my.state("x_1"): 2}), "x_1 stands in equations twice"),
     (lambda u: u.state("x")[3], "index 3 is out of bounds"),
@@ -111,3 +113,66 @@ def test_a_full_coupling_of_many_units_is_written_without_making_all_derivatives
     model = my.model({angle: units.full_coupling("A", np.ones((128, 128))) @ np.sin(angle)})
     monkeypatch.setattr(cpp, "derivatives", refuse)
     assert "jacobian" not in model.cpp()
+
+
+def alike(count=20, **options):
+    """Units with couplings of two kinds, neighbours, and parameters and shared values of their own."""
+    units = my.units(count, **options)
+    x, v = units.states("x v")
+    k, w, c = units.parameter("k"), units.shared("w"), my.parameter("c")
+    near = units.circulant_coupling("C", np.stack([np.roll([0.1, 0.2, *[0] * (count - 3), 0.3], i)
+                                                   for i in range(count)]), 1)
+    F = units.full_coupling("F", np.random.default_rng(2).normal(size=(count, count)) / count)
+    force = np.roll(w, 2) * my.cos(my.time) + F @ (k * x * v) + F @ x
+    return my.model({x: v + near @ x, v: -k * np.roll(x, -1) - c * v + force}), (x, v, k, w, c)
+
+
+def test_units_that_are_alike_are_written_as_one_unit_for_gpus():
+    model, (x, v, k, w, c) = alike()
+    text, struct = model.device_source("tsitouras_5", "double")
+    assert f"using {struct} = myriad::coupled_units<{struct}_unit, 20>;" in text
+    assert model.device_source("rodas_5p", "double") == model.source()
+    kinds = model.states, model.parameters, model.shared
+    as_units = my.CppModel("#include <myriad/coupled_units.hpp>\n" + text, struct, *kinds)
+    values = {c: 0.3, **{k[i]: 1 + 0.1 * i for i in range(20)}, **{w[i]: 0.05 * i for i in range(20)}}
+    start = {**{x[i]: 0.2 * i - 1 for i in range(20)}, **{v[i]: 0.1 * i for i in range(20)}}
+    of_tables = {name: model.shared_values[name] for name in model.shared if name in model.shared_values}
+    one = my.solve(model, values, start=start, time=(0, 2), rtol=1e-9, device="cpu")
+    other = my.solve(as_units, {**{s.value[1]: value for s, value in values.items()}, **of_tables},
+                     start={s.value[1]: value for s, value in start.items()}, time=(0, 2), rtol=1e-9, device="cpu")
+    for name in model.states:
+        np.testing.assert_allclose(other[name], one[name], rtol=1e-11, atol=1e-11)
+
+
+def test_units_say_how_many_threads_of_a_gpu_integrate_an_instance():
+    assert "threads_per_instance = 16;" in alike(threads_per_instance=16)[0].device_source("cash_karp", "double")[0]
+    few, _ = alike(4)
+    assert few.device_source("cash_karp", "double") == few.source()  # one thread has registers for eight states
+    alone, _ = alike(threads_per_instance=1)
+    assert alone.device_source("cash_karp", "double") == alone.source()
+
+
+@pytest.mark.parametrize("more", [
+    lambda x: dict(events=[my.event(x[0])]), lambda x: dict(finalise={x[0]: 1}), lambda x: dict(stops=my.stop(1.0)),
+    lambda x: dict(accessories={my.accessory("top"): my.phase_maximum(x[0])}), lambda x: dict(generate={x[0]: 1})])
+def test_units_with_more_than_equations_are_written_out_for_gpus(more):
+    x = my.units(20).state("x")
+    model = my.model({x: -x}, **more(x))
+    assert unit_form(model) is None and model.device_source("cash_karp", "double") == model.source()
+
+
+@pytest.mark.parametrize("name", ["publish", "sum_3", "unit", "threads_per_instance", "x"])
+def test_units_with_names_that_a_unit_has_itself_are_written_out_for_gpus(name):
+    x, k = my.units(20).state("x"), my.parameter(name)
+    assert unit_form(my.model({x: -k * x})) is None
+
+
+def test_units_that_are_not_alike_are_written_out_for_gpus():
+    units = my.units(20)
+    x = units.state("x")
+    full = units.full_coupling("A", np.ones((20, 20)))
+    assert unit_form(my.model({x: -x})) is not None
+    assert unit_form(my.model({x: -np.arange(20) * x})) is None
+    assert unit_form(my.model({x: x[0] - x})) is None  # all read the first
+    assert unit_form(my.model({x: full @ (np.arange(20) * x)})) is None
+    assert unit_form(my.model({x: full @ np.roll(x, 1)})) is None

@@ -25,8 +25,11 @@ struct large_unit {
         return {};
     }
 };
-struct place_with_a_hook : teams::of_team<teams::place, 8> {
-    MYRIAD_FUNCTION static void after_step(int, auto&) {}
+struct place_that_writes_parameters : teams::of_team<teams::place, 8> {
+    static constexpr bool writes_parameters = true;
+};
+struct place_that_reads_accessories : teams::of_team<teams::place, 8> {
+    enum unit_accessory { force, n_unit_accessory };
 };
 
 }  // namespace
@@ -61,7 +64,13 @@ TEST_CASE("units say how many threads integrate them, and what teams do not have
     CHECK(threads_per_instance<ring, myriad::tsitouras_5, double>() == 4);
     CHECK(threads_per_instance<teams::places<1>, myriad::tsitouras_5, double>() == 1);
     CHECK(threads_per_instance<ring, myriad::rodas_5p, double>() == 1);
-    CHECK(threads_per_instance<ring, myriad::controlled<myriad::tsitouras_5, myriad::rms_norm>, double>() == 1);
-    CHECK(threads_per_instance<ring, myriad::dense<myriad::tsitouras_5>, double>() == 1);
-    CHECK(threads_per_instance<myriad::coupled_units<place_with_a_hook, 30>, myriad::tsitouras_5, double>() == 1);
+    CHECK(threads_per_instance<ring, teams::averaged, double>() == 4);
+    CHECK(threads_per_instance<ring, myriad::dense<myriad::tsitouras_5>, double>() == 4);
+    CHECK(threads_per_instance<teams::hoppers<4>, myriad::tsitouras_5, double>() == 4);
+    const auto threads_of = [](auto unit) {
+        return threads_per_instance<myriad::coupled_units<decltype(unit), 30>, myriad::tsitouras_5, double>();
+    };
+    CHECK(threads_of(place_that_writes_parameters{}) == 1);
+    CHECK(threads_of(place_that_reads_accessories{}) == 1);
+    CHECK(threads_of(teams::of_team<units::ball, 8>{}) == 1);  // which observes
 }

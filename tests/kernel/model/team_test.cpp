@@ -22,6 +22,8 @@ myriad::ensemble<Model> ensemble_of() {
             e.parameter(c)[i] = 2 + 0.2 * static_cast<double>((5 * c + 2 * i) % 13);
     }
     for (int c = 0; c < Model::n_shared; ++c) e.shared(c) = 0.05 * (c % 7) - 0.1;
+    for (int c = 0; c < Model::n_accessory; ++c) e.accessory(c) = 100 + c;
+    for (int c = 0; c < Model::n_integer_accessory; ++c) e.integer_accessory(c) = 200 + c;
     e.time_domain(0, 1.5);
     return e;
 }
@@ -29,19 +31,39 @@ template <class Method, class Model>
 auto integrate(myriad::ensemble<Model>& e, myriad::options options) {
     options.advice = myriad::advice::off;
     for (int c = 0; c < Model::n_state; ++c) options.record.states.push_back(c);
+    for (int c = 0; c < Model::n_accessory; ++c) options.record.accessories.push_back(c);
+    for (int c = 0; c < Model::n_integer_accessory; ++c) options.record.integer_accessories.push_back(c);
     return myriad::solve<Method>(myriad::device::cpu(1), e, options);
 }
 
+/// Equal where neither is NaN, which samples are beyond the last.
+template <class Array>
+bool same(const Array& a, const Array& b) {
+    return (a == b || (a.isNaN() && b.isNaN())).all();
+}
 template <class Alone, class Together>
-void compare(const myriad::ensemble<Alone>& alone, const myriad::ensemble<Together>& together) {
+void compare(const myriad::ensemble<Alone>& alone, const myriad::ensemble<Together>& together,
+             const std::vector<int>& sampled = {}) {
     for (std::int64_t i = 0; i < alone.size(); ++i) CHECK(alone.status(i) == together.status(i));
     for (int c = 0; c < Alone::n_state; ++c) CHECK((alone.state(c) == together.state(c)).all());
+    for (int c = 0; c < Alone::n_accessory; ++c) CHECK((alone.accessory(c) == together.accessory(c)).all());
+    for (int c = 0; c < Alone::n_integer_accessory; ++c)
+        CHECK((alone.integer_accessory(c) == together.integer_accessory(c)).all());
+    CHECK((alone.t() == together.t()).all());
+    for (std::int64_t i = 0; i < alone.size(); ++i) CHECK(alone.t_end_of(i) == together.t_end_of(i));
+    if (!alone.samples().empty()) {
+        CHECK(alone.samples().stored().minCoeff() > 3);
+        CHECK((alone.samples().stored() == together.samples().stored()).all());
+        CHECK(same(alone.samples().time(), together.samples().time()));
+        for (const int c : sampled) CHECK(same(alone.samples().state(c), together.samples().state(c)));
+    }
     CHECK((alone.accepted_steps() == together.accepted_steps()).all());
     CHECK((alone.rejected_steps() == together.rejected_steps()).all());
     CHECK((alone.rhs_evaluations() == together.rhs_evaluations()).all());
 }
 template <class Method, class Alone, class Together>
-void compare(const myriad::options& options) {
+void compare(myriad::options options, const std::vector<int>& sampled = {}) {
+    for (const int c : sampled) options.samples.states.push_back(c);
     for (const auto order : {teams::order::first_thread_first, teams::order::last_thread_first}) {
         teams::order_of_threads = order;
         auto alone = ensemble_of<Alone>();
@@ -49,8 +71,12 @@ void compare(const myriad::options& options) {
         const auto by_one = integrate<Method>(alone, options);
         const auto by_team = integrate<Method>(together, options);
         CHECK(alone.accepted_steps().minCoeff() > 3);
-        compare(alone, together);
+        compare(alone, together, sampled);
         for (int c = 0; c < Alone::n_state; ++c) CHECK((by_one.records.state(c) == by_team.records.state(c)).all());
+        for (int c = 0; c < Alone::n_accessory; ++c)
+            CHECK((by_one.records.accessory(c) == by_team.records.accessory(c)).all());
+        for (int c = 0; c < Alone::n_integer_accessory; ++c)
+            CHECK((by_one.records.integer_accessory(c) == by_team.records.integer_accessory(c)).all());
     }
 }
 /// Another one for each component, so that a wrong one shows.
@@ -66,6 +92,8 @@ myriad::options tolerances(int n) {
     return options;
 }
 
+using teams::drifters;
+using teams::hoppers;
 using teams::phases;
 using teams::places;
 using teams::ring;
@@ -97,6 +125,38 @@ TEST_CASE("a team of threads goes through phases, and carries time and step on, 
     options.phase_length = 0.4;
     options.phase_step = myriad::phase_step::carry_on;
     compare<teams::with_memory, places<1>, places<4>>(options);
+}
+
+TEST_CASE("a team of threads samples along the solution, and by steps, as one thread does") {
+    myriad::options options = tolerances(30);
+    options.samples = {.capacity = 40, .evenly = 17};
+    compare<teams::sampled, places<1>, places<4>>(options, {0, 7, 28, 29});
+    options.samples = {.capacity = 6, .every = 2};
+    compare<teams::sampled, places<1>, places<4>>(options, {3, 29});
+}
+
+TEST_CASE("a team of threads averages errors over all states as one thread does") {
+    compare<teams::averaged, places<1>, places<16>>(tolerances(30));
+}
+
+TEST_CASE("a team of threads locates events and calls hooks as one thread does") {
+    myriad::options options = tolerances(28);
+    for (int unit = 0; unit < hoppers<1>::n_unit; ++unit) {
+        options.events.push_back({.direction = myriad::direction::falling, .tolerance = unit % 3 == 0 ? 0 : 1e-8});
+        options.events.push_back({.stop_after = unit == 5 ? 4 : 0});
+    }
+    options.phases = 3;
+    options.phase_time = myriad::phase_time::carry_on;
+    options.phase_length = 0.8;
+    compare<myriad::cash_karp, hoppers<1>, hoppers<4>>(options);
+    compare<myriad::cash_karp, hoppers<1>, hoppers<16>>(options);
+    options.samples = {.capacity = 100, .evenly = 20};
+    compare<teams::sampled_8, hoppers<1>, hoppers<8>>(options, {0, 1, 27});
+}
+
+TEST_CASE("a team of threads calls hooks that move the end of the phase as one thread does") {
+    compare<myriad::dormand_prince_5, drifters<1>, drifters<8>>(tolerances(21));
+    compare<myriad::runge_kutta_4, drifters<1>, drifters<2>>({.step = 0.01});
 }
 
 TEST_CASE("a state that overflows in one unit ends its instance alone, in a team as in one thread") {

@@ -2,6 +2,8 @@
 // Coupled units twice: integrated by one thread, and by a team of so many.
 #pragma once
 
+#include <myriad/methods.hpp>
+
 #include "tests/kernel/model/unit_models.hpp"
 
 namespace teams {
@@ -19,6 +21,89 @@ struct place {
     }
 };
 
+/// Balls on springs between neighbours, which fall on a table; where one lands, it takes a part of every other's speed.
+/// Hooks of every kind, events, and stop times at which the system is kicked.
+struct hopper {
+    static constexpr bool accessories_are_outputs = true;
+    enum unit_state { height, velocity, n_unit_state };
+    enum parameter { spring, n_parameter };
+    enum unit_parameter { restitution, n_unit_parameter };
+    enum accessory { sum_of_heights, n_accessory };
+    enum integer_accessory { landings, n_integer_accessory };
+    enum unit_accessory { highest, apex, n_unit_accessory };
+    enum unit_integer_accessory { own_landings, n_unit_integer_accessory };
+    enum unit_event { landing, turning, n_unit_event };
+    enum stop { kick, n_stop };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_unit_state> rhs(int unit, auto, const auto& y, const auto& p) {
+        const int next = (unit + 1) % y.units, before = (unit + y.units - 1) % y.units;
+        return {y[velocity],
+                R(-9.81) + R(0.1) * p[spring] * (y.of(next)[height] + y.of(before)[height] - R(2) * y[height])};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_unit_event> events(int unit, auto, const auto& y, const auto& p) {
+        // The height above a table that the next ball tilts a little.
+        return {y[height] - R(0.01) * p.unit_parameter[restitution] * y.of((unit + 1) % y.units)[height], y[velocity]};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static R stop_time(int, int number, const auto& p) {
+        return R(0.11) * p[spring] * R(number + 1);
+    }
+    MYRIAD_FUNCTION static void initialise(int unit, auto& lane) {
+        if (unit == 0) lane.integer_accessory[landings] = 0;
+        lane.unit_accessory[highest] = lane.y[height];
+        lane.unit_accessory[apex] = -1;
+        lane.y[velocity] += 0.01 * unit;
+    }
+    MYRIAD_FUNCTION static myriad::action after_step(int unit, auto& lane) {
+        if (lane.y[height] > lane.unit_accessory[highest]) lane.unit_accessory[highest] = lane.y[height];
+        const bool is_last = unit == lane.y.units - 1;
+        return is_last && lane.integer_accessory[landings] >= 30 ? myriad::action::end_phase : myriad::action::proceed;
+    }
+    MYRIAD_FUNCTION static myriad::action after_event(int unit, int event, auto& lane) {
+        if (event == turning) {
+            lane.unit_accessory[apex] = lane.t;
+            return myriad::action::proceed;
+        }
+        lane.y[velocity] = -0.2 * lane.unit_parameter[restitution] * lane.y[velocity];
+        for (int other = 0; other < lane.y.units; ++other)
+            if (other != unit) lane.of(other).y[velocity] *= 0.99;
+        lane.unit_integer_accessory[own_landings] = static_cast<int>(lane.event_count[landing]);
+        lane.integer_accessory[landings] += 1;
+        lane.h_next = 0.01;
+        return myriad::action::proceed;
+    }
+    MYRIAD_FUNCTION static myriad::action after_stop(int unit, int, int number, auto& lane) {
+        lane.y[velocity] += 0.1 * number + 0.01 * unit;
+        return number == 9 ? myriad::action::end_instance : myriad::action::proceed;
+    }
+    MYRIAD_FUNCTION static void finalise(int unit, auto& lane) {
+        if (unit == 0) lane.accessory[sum_of_heights] = 0;
+        lane.accessory[sum_of_heights] += lane.y[height];
+    }
+};
+/// Drifting points, whose hook, written for packs, ends the phase sooner and stops it.
+struct drifter {
+    static constexpr bool accessories_are_outputs = true, writes_time_domain = true;
+    enum unit_state { x, n_unit_state };
+    enum unit_parameter { rate, n_unit_parameter };
+    enum unit_accessory { steps, n_unit_accessory };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_unit_state> rhs(int unit, auto t, const auto& y, const auto& p) {
+        return myriad::vec<R, n_unit_state>{p.unit_parameter[rate] * myriad::cos(t * R(3)) -
+                                            y.of((unit + 1) % y.units)[x]};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::mask_of<R> after_step(int unit, auto& lane) {
+        lane.unit_accessory[steps] += R(1);
+        if (unit == 3) lane.t_end = lane.t_end - R(0.0625) * lane.h;
+        lane.y[x] = lane.y[x] * R(0.9990234375);
+        return lane.y[x] > R(40);
+    }
+};
+
 template <class Unit, int threads>
 struct of_team : Unit {
     static constexpr bool scalar_only = true;  // with the functions of one lane
@@ -30,8 +115,15 @@ template <int threads>
 using phases = myriad::coupled_units<of_team<units::phase_oscillator, threads>, 19>;
 template <int threads>
 using ring = myriad::coupled_units<of_team<units::oscillator, threads>, 20>;
+template <int threads>
+using hoppers = myriad::coupled_units<of_team<hopper, threads>, 14>;
+template <int threads>
+using drifters = myriad::coupled_units<of_team<drifter, threads>, 21>;
 
 using with_memory = myriad::controlled<myriad::dormand_prince_5, myriad::pi_control>;
+using sampled = myriad::dense<myriad::dormand_prince_5>;
+using sampled_8 = myriad::dense<myriad::dormand_prince_8>;
+using averaged = myriad::controlled<myriad::dormand_prince_8, myriad::rms_norm>;
 using careful_start = myriad::controlled<myriad::cash_karp, myriad::automatic_first_step, myriad::mixed_scale>;
 
 /// Who comes first between two points at which the threads of a team wait for each other.

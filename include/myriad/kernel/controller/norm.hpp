@@ -125,20 +125,24 @@ MYRIAD_FUNCTION error_scale<S, n_controlled<Model>> scale_of_errors(const kernel
     return scale;
 }
 
-/// The largest |factor * sum(c)| / scale over the components, or the chosen norm; NaN if one of them is. `all` is the
-/// number of components of the whole system.
-template <class Method, int all, class S, int n, class Sum>
+/// The largest |factor * sum(c)| / scale over the components of a thread, or the chosen norm of all; NaN if one of them
+/// is.
+template <class Model, class Method, class S, int n, class Sum>
 MYRIAD_FUNCTION control_of<S> error_over_tolerance(const vec<S, n>& scale, const S& factor, Sum&& sum) {
     using C = control_of<S>;
+    constexpr int all = n_controlled<whole_of<Model>>;  // components of the whole system
     if constexpr (averages_errors<Method>) {
         using R = real_of<C>;
         C squares = C(R(0));
-        MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
-        for (int c = 0; c < n; ++c) {
-            const C ratio = static_cast<C>(error_ratio(factor * sum(c), scale[c]));
-            squares = fma(ratio, ratio, squares);
+        const auto ratio = [&](int c) MYRIAD_LAMBDA { return static_cast<C>(error_ratio(factor * sum(c), scale[c])); };
+        const auto add = [&](const C& next) MYRIAD_LAMBDA { squares = fma(next, next, squares); };
+        if constexpr (team_size<Model> == 1) {
+            MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
+            for (int c = 0; c < n; ++c) add(ratio(c));
+        } else {
+            as_part<Model>::template in_order<S>(ratio, add);
         }
-        return sqrt(squares * C(R(1.0 / n)));
+        return sqrt(squares * C(R(1.0 / all)));
     } else {
         vec<S, n> ratio;
         MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
@@ -163,7 +167,7 @@ MYRIAD_FUNCTION error_norm<S> scaled_error(const kernel_arguments<Model, real_of
     const auto scale = detail::scale_of_errors<Method, Model>(args, y, trial.y);
     const auto worst_of = [&](auto row) MYRIAD_LAMBDA {
         constexpr int weights = decltype(row)::value;
-        return team_for<Model>::largest(error_over_tolerance<Method, n_controlled<whole_of<Model>>>(
+        return team_for<Model>::largest(error_over_tolerance<Model, Method>(
             scale.of, detail::error_factor<Method, weights>(h),
             [&](int c) MYRIAD_LAMBDA { return detail::error_sum<Method, weights>(trial, c); }));
     };

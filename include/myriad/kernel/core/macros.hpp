@@ -50,6 +50,7 @@
 #define MYRIAD_ROLLED
 #define MYRIAD_ROUNDED_PRODUCT(a, b) ((a) * (b))
 #endif
+#define MYRIAD_WHOLE_LOOP static_cast<void>(0)
 #define MYRIAD_TARGET cuda_lane
 #define MYRIAD_BACKEND_HEADER "myriad/cuda/run.cuh"
 #else
@@ -57,7 +58,12 @@
 #define MYRIAD_LAMBDA __attribute__((always_inline))
 #if defined(__clang__)
 #define MYRIAD_FLATTEN
+#define MYRIAD_WHOLE_LOOP static_cast<void>(0)
 #else
+/// In a loop, keeps g++ from making several of it. g++ 12 at -O3 does so even where one of them writes in every turn,
+/// through a reference, a local vector of dual numbers that the other one reads, which then sees the last turn's.
+#define MYRIAD_WHOLE_LOOP \
+    if (!__builtin_is_constant_evaluated()) asm volatile("")
 /// Inlines all calls within a function that contains much of the kernel body. Functions that are not always inlined, as
 /// xsimd's, g++ inlines one by one, and reads the whole function after each, which took 32 of 52 s for four
 /// coupled oscillators. With this attribute it inlines them all before it reads.

@@ -103,6 +103,16 @@ struct thread_team {
         }
     }
 
+    /// Whether it holds in one of them.
+    template <class M>
+    static MYRIAD_FUNCTION M any(const M& holds) {
+        if constexpr (threads == 1) {
+            return holds;
+        } else {
+            return !all(!holds);
+        }
+    }
+
     /// The largest of the threads' non-negative numbers; NaN if one is. Their bits as integers have the same order,
     /// with NaN above infinity, so that it does not depend on the order of the threads.
     template <class S>
@@ -123,7 +133,11 @@ struct thread_team {
 #if defined(__CUDA_ARCH__)
         return __shfl_sync(mask(), own, 0, threads);
 #elif defined(MYRIAD_SIMULATED_TEAM) && !defined(__CUDACC__)
-        return static_cast<T>(simulated_team::exchange(static_cast<std::uint64_t>(own), 0));
+        std::uint64_t bits = 0;
+        __builtin_memcpy(&bits, &own, sizeof own);
+        bits = simulated_team::exchange(bits, 0);
+        __builtin_memcpy(&own, &bits, sizeof own);
+        return own;
 #else
         return own;
 #endif

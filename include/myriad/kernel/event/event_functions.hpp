@@ -31,11 +31,11 @@ MYRIAD_FUNCTION vec<S, n_event<Model>> event_slopes(const S& t, const vec<S, n_s
 }
 
 /// The weight of component c in `event_roundings`: between 1 and 2, no two alike.
-template <int c, class R>
-inline constexpr R rounding_weight = [] {
+template <class R>
+MYRIAD_FUNCTION R rounding_weight(int c) {
     const double turns = 0.61803398874989485 * c;
     return static_cast<R>(1 + (turns - static_cast<double>(static_cast<long long>(turns))));
-}();
+}
 
 /// How far rounding may put the event functions at (t, y) from their values, as far as that shows: nothing can be told
 /// from values closer to zero. A few roundings of t and of states of the given sizes, times the derivatives. One
@@ -48,8 +48,12 @@ MYRIAD_RARE_FUNCTION vec<R, n_event<Model>> event_roundings(R t, vec<R, n_state<
     constexpr R least = smallest_normal_of<R> / epsilon_of<R>;
     vec<dual<R>, n_state<Model>> y_dual;
     static_for<0, n_state<Model>>([&](auto c) MYRIAD_LAMBDA {
-        constexpr R weight = rounding_weight<decltype(c)::value, R>;  // as device code may call no host function
-        y_dual[c] = dual<R>(y[c], weight * (size[c] + least));
+        if constexpr (team_size<Model> == 1) {
+            constexpr R weight = rounding_weight<R>(decltype(c)::value);
+            y_dual[c] = dual<R>(y[c], weight * (size[c] + least));
+        } else {
+            y_dual[c] = dual<R>(y[c], rounding_weight<R>(detail::whole_state<Model>(c)) * (size[c] + least));
+        }
     });
     const auto g = Model::template events<dual<R>>(dual<R>(t, R(0.5) * t), y_dual, p);
     vec<R, n_event<Model>> rounding;

@@ -277,7 +277,7 @@ private:
             if constexpr (use.acts) different = different | differing(x, y);
         };
         detail::for_each_member<Model>(compare, a, b);
-        return different;
+        return team_for<Model>::any(different);
     }
 
     /// After a hook changed lanes that were as in `before`: slopes and event functions are evaluated again.
@@ -291,7 +291,7 @@ private:
 
     /// Refuses a state that is not finite: restores `before` and ends the lane.
     MYRIAD_FUNCTION void check_finite(const mask& lanes, const vec<S, n>& before) {
-        const mask bad = lanes & !all_finite(s.data.y);
+        const mask bad = lanes & !team_for<Model>::all(all_finite(s.data.y));
         if (MYRIAD_UNLIKELY(any(bad))) {
             MYRIAD_UNROLL
             for (int c = 0; c < n; ++c) s.data.y[c] = select(bad, before[c], s.data.y[c]);

@@ -143,7 +143,7 @@ struct integrator {
 
     /// Whether the trial, in which an event may begin, is to be taken again when more threads of the warp have one.
     MYRIAD_FUNCTION bool waits(const detection_type& detected, event_driver_type& events) {
-        if constexpr (is_pack<S>) {
+        if constexpr (is_pack<S> || team_size < Model >> 1) {  // a team has one for all its threads
             return false;
         } else {
             constexpr auto interval = stepping_type::stagnation_interval;

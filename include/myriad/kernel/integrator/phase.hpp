@@ -109,7 +109,7 @@ private:
         const std::int64_t index = s.instance[i];
         MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
         for (int c = 0; c < n; ++c) set_lane(s.data.y[c], i, at(args.state, detail::whole_state<Model>(c), i));
-        if constexpr (team_size < Model >> 1) as_part<Model>::load_parameters(args, index);
+        if constexpr (team_size < Model >> 1) as_part<Model>::load(args, index);
         MYRIAD_UNROLL
         for (int c = 0; c < n_parameter<Model>; ++c) set_lane(s.data.parameter[c], i, at(args.parameter, c, i));
         MYRIAD_UNROLL
@@ -147,6 +147,7 @@ private:
         MYRIAD_UNROLL
         for (int c = 0; c < n_integer_accessory<Model>; ++c)
             at(args.integer_accessory, c, i) = static_cast<std::int32_t>(get_lane(s.data.integer_accessory[c], i));
+        if constexpr (team_size < Model >> 1) as_part<Model>::store(args, index);
         stepping_type{args, s}.store(i);
     }
 
@@ -248,11 +249,11 @@ private:
         if constexpr (writes_time_domain<Model>)
             finite = finite && get_lane(s.data.t_begin, i) == get_lane(s.data.t_begin, i) &&
                      get_lane(s.data.t_end, i) == get_lane(s.data.t_end, i);
-        if (!finite) {
+        if (!team_for<Model>::all(finite)) {
             set_lanes(s.data.y, i, before);
             set_lane(s.data.h_next, i, h_next);
             s.ending[i] = status::not_finite;
-        } else if (!same_values(before, after, n - n_tangent<Model>)) {
+        } else if (!team_for<Model>::all(same_values(before, after, n - n_tangent<Model>))) {
             if constexpr (m > 0) events.reset(i);
         }
         return wanted;
@@ -296,6 +297,7 @@ private:
             const int column = args.state_column[detail::whole_state<Model>(c)];
             if (column >= 0) to(r.values, column) = get_lane(s.data.y[c], i);
         }
+        if constexpr (team_size < Model >> 1) as_part<Model>::record(args, to);
         MYRIAD_UNROLL
         for (int c = 0; c < n_accessory<Model>; ++c)
             if (args.accessory_column[c] >= 0)

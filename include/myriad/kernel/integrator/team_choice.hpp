@@ -22,9 +22,7 @@ template <class Model, class Method>
 constexpr bool runs_in_teams() {
     if constexpr (is_of_units<Model>) {
         using unit = typename Model::unit_type;
-        return !rosenbrock_method<Method> && !samples_trajectory<Method> && !averages_errors<Method> &&
-               !has_events<Model> && !has_initialise<Model> && !has_after_step<Model> && !has_finalise<Model> &&
-               !has_stops<Model> && !has_observe<Model> && !writes_time_domain<unit> && !writes_parameters<unit> &&
+        return !rosenbrock_method<Method> && !has_observe<Model> && !writes_parameters<unit> &&
                (accessories_are_outputs<unit> || n_accessory<Model> + n_integer_accessory<Model> == 0);
     } else {
         return false;

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "myriad/kernel/core/macros.hpp"
+#include "myriad/kernel/core/team.hpp"
 #include "myriad/kernel/model/component_kinds.hpp"
 
 namespace myriad::detail {
@@ -122,7 +123,7 @@ MYRIAD_MODEL_DECLARATION(autonomous)
 // Whether a model has a member of that name, whatever its signature: a class that inherits the name twice finds it
 // ambiguous. This also finds templates and overloads, which a test of the signature would miss, so that a hook with a
 // wrong signature is an error and not ignored.
-#define MYRIAD_HOOK_NAME(hook)                                           \
+#define MYRIAD_MEMBER_NAME(hook)                                         \
     namespace hook_names {                                               \
     struct hook##_name {                                                 \
         int hook;                                                        \
@@ -137,9 +138,13 @@ MYRIAD_MODEL_DECLARATION(autonomous)
         } else {                                                         \
             return !requires { &hook_names::with_##hook<Model>::hook; }; \
         }                                                                \
-    }                                                                    \
-    template <class Model>                                               \
-    inline constexpr bool has_##hook = names_##hook<Model>();
+    }
+
+/// The functions of a model; those of a part of it are the whole's.
+#define MYRIAD_HOOK_NAME(hook) \
+    MYRIAD_MEMBER_NAME(hook)   \
+    template <class Model>     \
+    inline constexpr bool has_##hook = names_##hook<whole_of<Model>>();
 MYRIAD_HOOK_NAME(rhs)
 MYRIAD_HOOK_NAME(jacobian)
 MYRIAD_HOOK_NAME(events)
@@ -153,10 +158,14 @@ MYRIAD_HOOK_NAME(condition)
 MYRIAD_HOOK_NAME(after_trigger)
 MYRIAD_HOOK_NAME(finalise)
 MYRIAD_HOOK_NAME(publish)
-#define MYRIAD_NAME_OF_COUNT(kind, ...) MYRIAD_HOOK_NAME(n_##kind)
+#define MYRIAD_NAME_OF_COUNT(kind, ...) \
+    MYRIAD_MEMBER_NAME(n_##kind)        \
+    template <class Model>              \
+    inline constexpr bool has_n_##kind = names_n_##kind<Model>();
 MYRIAD_ENUMERATED_KINDS(MYRIAD_NAME_OF_COUNT)
 #undef MYRIAD_NAME_OF_COUNT
 #undef MYRIAD_HOOK_NAME
+#undef MYRIAD_MEMBER_NAME
 
 /// Whether steps have to end at times that the model gives.
 template <class Model>

@@ -26,7 +26,10 @@ MYRIAD_FUNCTION void each_unit(F&& f) {
         static_for<0, (end - begin) / step>([&](auto i) MYRIAD_LAMBDA { f(begin + step * decltype(i)::value); });
     } else {
         MYRIAD_ROLLED
-        for (int unit = begin; unit + step <= end; unit += step) f(unit);
+        for (int unit = begin; unit + step <= end; unit += step) {
+            f(unit);
+            MYRIAD_WHOLE_LOOP;
+        }
     }
 }
 template <class Unit, int units, class F>

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The part of coupled units that one thread of a team integrates, as a model: the loop takes it like any other, with
 // the thread's states as its state vector. Only what reads other threads' states is done together: the right-hand side,
-// here, and the decisions on a step, which take the largest error and the finiteness of all threads (core/team.hpp).
+// event functions and hooks, here, and the decisions on a step, which take the largest error and the finiteness of all
+// threads (core/team.hpp). Every thread has the values of all event functions and locates events as one thread does;
+// hooks are called by the leading thread, with the whole system.
 //
 // Thread number i of a team of k has units i, i + k, i + 2 k, ... Where k does not divide the number of units, the last
 // ones are the last unit once more in some threads: they compute what its thread computes, and change no largest error.
@@ -23,9 +25,13 @@ template <class Whole>
 struct team_layout {
     using unit = typename Whole::unit_type;
     static constexpr int units = Whole::n_unit;
-    static constexpr int state = 0;  // component by component, so that neighbours' are side by side
-    static constexpr int parameter = state + n_state<Whole>;  // of the system, then of the units
-    static constexpr int published = parameter + n_parameter<Whole>;
+    // Of states, for a right-hand side component by component, so that neighbours' are side by side, else unit by unit;
+    // behind them the event functions, of which both may be dual numbers.
+    static constexpr int state = 0;
+    static constexpr int parameter = n_event<Whole> > 0 ? 2 * (n_state<Whole> + n_event<Whole>) : n_state<Whole>;
+    static constexpr int accessory = parameter + n_parameter<Whole>;  // of the system, then of the units, as parameters
+    static constexpr int integer_accessory = accessory + n_accessory<Whole>;
+    static constexpr int published = integer_accessory + n_integer_accessory<Whole>;
     static constexpr int sum = published + units * n_publication<unit>;
     static constexpr int end = sum + units * n_coupling<unit>;
 };
@@ -86,6 +92,30 @@ struct team_inputs {
     const std::int32_t* shared_integer;
     vec<R, 0> accessory;
     vec<std::int32_t, 0> integer_accessory;
+
+    template <class I>
+    MYRIAD_FUNCTION const R& operator[](I i) const {
+        return parameter[static_cast<int>(i)];
+    }
+};
+
+/// The whole system as hooks see it: the members of `lane`, of which the team has the components in its memory.
+template <class Whole, class R, class Lane>
+struct team_lane {
+    const R& t;
+    decltype(Lane::t_begin) t_begin;
+    decltype(Lane::t_end) t_end;
+    const R& h;
+    R& h_next;
+    R* y;
+    const R* parameter;
+    const R* shared;
+    const std::int32_t* shared_integer;
+    R* accessory;
+    integer_of<R>* integer_accessory;
+    const index_of<R>& index;
+    const integer_of<R>& phase;
+    const integer_of<R>* event_count;
 };
 
 template <class Whole, int threads>
@@ -97,6 +127,8 @@ struct part_of_units {
     static constexpr int parts = (units + threads - 1) / threads;  // units of a thread
     static constexpr int n_state = parts * states_of_unit;
     static constexpr int n_shared = detail::n_shared<Whole>, n_shared_integer = detail::n_shared_integer<Whole>;
+    static constexpr int n_event = detail::n_event<Whole>, n_stop = detail::n_stop<Whole>;
+    static constexpr bool writes_time_domain = detail::writes_time_domain<Whole>;
 
     template <class R>
     static constexpr int stride = team_stride<Whole, threads, R>();
@@ -142,16 +174,165 @@ struct part_of_units {
             to[n + c] = args.absolute_tolerance[c];
         }
     }
-    /// Copies the parameters of an instance there. The right-hand side waits for it.
-    template <class Arguments>
-    static MYRIAD_FUNCTION void load_parameters(const Arguments& args, std::int64_t instance) {
-        if constexpr (n_parameter < Whole >> 0) {
-            using R = std::remove_cvref_t<decltype(args.relative_tolerance[0])>;
-            together::synchronise();  // all have done with those of the last instance
-            R* const to = memory<R>() + layout::parameter;
-            for (int c = together::number_of_thread(); c < n_parameter<Whole>; c += threads)
-                to[c] = args.parameter[static_cast<std::int64_t>(c) * args.size + instance];
+    /// Calls `use(c)` for the thread's share of so many components.
+    template <int count, class Use>
+    static MYRIAD_FUNCTION void share_out(Use&& use) {
+        if constexpr (count > 0) {
+            for (int c = together::number_of_thread(); c < count; c += threads) use(c);
         }
+    }
+    template <class R>
+    static MYRIAD_FUNCTION integer_of<R>* integer_accessories() {
+        return reinterpret_cast<integer_of<R>*>(memory<R>() + layout::integer_accessory);
+    }
+
+    /// Copies the parameters and accessories of an instance there.
+    template <class Arguments>
+    static MYRIAD_FUNCTION void load(const Arguments& args, std::int64_t instance) {
+        using R = std::remove_cvref_t<decltype(args.relative_tolerance[0])>;
+        if constexpr (layout::published == layout::parameter) return;
+        const auto copy = [&](auto count, auto* to, const auto* from) MYRIAD_LAMBDA {
+            share_out<decltype(count)::value>([&](int c) MYRIAD_LAMBDA { to[c] = from[c * args.size + instance]; });
+        };
+        together::synchronise();  // all have done with those of the last instance
+        copy(constant_index<n_parameter<Whole>>{}, memory<R>() + layout::parameter, args.parameter);
+        copy(constant_index<n_accessory<Whole>>{}, memory<R>() + layout::accessory, args.accessory);
+        copy(constant_index<n_integer_accessory<Whole>>{}, integer_accessories<R>(), args.integer_accessory);
+        together::synchronise();
+    }
+    /// Copies the accessories, which hooks may have written, back.
+    template <class Arguments>
+    static MYRIAD_FUNCTION void store(const Arguments& args, std::int64_t instance) {
+        using R = std::remove_cvref_t<decltype(args.relative_tolerance[0])>;
+        share_out<n_accessory<Whole>>([&](int c) MYRIAD_LAMBDA {
+            args.accessory[c * args.size + instance] = memory<R>()[layout::accessory + c];
+        });
+        share_out<n_integer_accessory<Whole>>([&](int c) MYRIAD_LAMBDA {
+            args.integer_accessory[c * args.size + instance] = static_cast<std::int32_t>(integer_accessories<R>()[c]);
+        });
+    }
+    /// Records the accessories where `to(array, column)` says.
+    template <class Arguments, class To>
+    static MYRIAD_FUNCTION void record(const Arguments& args, To&& to) {
+        using R = std::remove_cvref_t<decltype(args.relative_tolerance[0])>;
+        share_out<n_accessory<Whole>>([&](int c) MYRIAD_LAMBDA {
+            const int column = args.accessory_column[c];
+            if (column >= 0) to(args.record.values, column) = memory<R>()[layout::accessory + c];
+        });
+        share_out<n_integer_accessory<Whole>>([&](int c) MYRIAD_LAMBDA {
+            const int column = args.integer_accessory_column[c];
+            if (column >= 0) to(args.record.integers, column) = static_cast<std::int32_t>(integer_accessories<R>()[c]);
+        });
+    }
+
+    /// Puts a number for each state, `own(c)` for the thread's, into the team's memory, one unit after the other.
+    template <class S, class Own>
+    static MYRIAD_FUNCTION S* put_states(Own&& own) {
+        auto* const of_team = reinterpret_cast<S*>(memory<real_of<S>>());
+        together::synchronise();  // all have read what lies there
+        MYRIAD_UNROLL
+        for (int c = 0; c < n_state; ++c)
+            if (is_own(c / states_of_unit)) of_team[whole_state(c)] = own(c);
+        together::synchronise();
+        return of_team;
+    }
+    /// Calls `use` for all of these numbers in the order of the states.
+    template <class R, class Own, class Use>
+    static MYRIAD_FUNCTION void in_order(Own&& own, Use&& use) {
+        const R* const of_team = put_states<R>([&](int c) MYRIAD_LAMBDA { return static_cast<R>(own(c)); });
+        using number = std::remove_cvref_t<decltype(own(0))>;
+        for (int c = 0; c < detail::n_state<Whole>; ++c) use(static_cast<number>(of_team[c]));
+    }
+
+    template <class R>
+    static MYRIAD_FUNCTION team_inputs<R> inputs_of_team(const auto& p) {
+        return {memory<R>() + layout::parameter, p.shared, p.shared_integer, {}, {}};
+    }
+
+    /// The event functions of all units, in every thread.
+    template <class S>
+    MYRIAD_FUNCTION static vec<S, n_event> events(auto t, const vec<S, n_state>& y, const auto& p) {
+        using R = real_of<S>;
+        constexpr int count = n_unit_event<unit_type>;
+        S* const states = put_states<S>([&](int c) MYRIAD_LAMBDA { return y[c]; });
+        S* const of_all = states + detail::n_state<Whole>;
+        const team_inputs<R> inputs = inputs_of_team<R>(p);
+        MYRIAD_UNROLL
+        for (int part = 0; part < parts; ++part) {
+            if (!is_own(part)) continue;
+            const int unit = unit_of(part);
+            const vec<S, count> of_unit =
+                unit_type::template events<S>(unit, t, unit_states<unit_type, units, const S>{states, unit},
+                                              unit_inputs<unit_type, units, R, R, team_inputs<R>>(inputs, unit));
+            for (int e = 0; e < count; ++e) of_all[unit * count + e] = of_unit[e];
+        }
+        together::synchronise();
+        vec<S, n_event> values;
+        MYRIAD_UNROLL
+        for (int j = 0; j < n_event; ++j) values[j] = of_all[j];
+        return values;
+    }
+    template <class R>
+    MYRIAD_FUNCTION static R stop_time(int stop, int number, const auto& p) {
+        return Whole::template stop_time<R>(stop, number, inputs_of_team<R>(p));
+    }
+
+    // Hooks
+    MYRIAD_FUNCTION static void initialise(auto& lane) {
+        call(lane, [](auto& whole) MYRIAD_LAMBDA { Whole::initialise(whole); });
+    }
+    MYRIAD_FUNCTION static action after_step(auto& lane) {
+        return call(lane, [](auto& whole) MYRIAD_LAMBDA {
+            if constexpr (units_have_generic_after_step<unit_type>) {
+                using R = std::remove_cvref_t<decltype(whole.t)>;
+                return Whole::template after_step<R>(whole) ? action::end_phase : action::proceed;
+            } else {
+                return Whole::after_step(whole);
+            }
+        });
+    }
+    MYRIAD_FUNCTION static action after_event(int event, auto& lane) {
+        return call(lane, [&](auto& whole) MYRIAD_LAMBDA { return Whole::after_event(event, whole); });
+    }
+    MYRIAD_FUNCTION static action after_stop(int stop, int number, auto& lane) {
+        return call(lane, [&](auto& whole) MYRIAD_LAMBDA { return Whole::after_stop(stop, number, whole); });
+    }
+    MYRIAD_FUNCTION static void finalise(auto& lane) {
+        call(lane, [](auto& whole) MYRIAD_LAMBDA { Whole::finalise(whole); });
+    }
+
+    /// Calls a hook with the whole system by the leading thread. All threads have what it has changed, and its action.
+    template <class Lane, class Hook>
+    static MYRIAD_FUNCTION action call(Lane& lane, Hook&& hook) {
+        using R = std::remove_cvref_t<decltype(lane.t)>;
+        R* const states = put_states<R>([&](int c) MYRIAD_LAMBDA { return lane.y[c]; });
+        action wanted = action::proceed;
+        if (together::leads()) {
+            team_lane<Whole, R, Lane> whole{lane.t,
+                                            lane.t_begin,
+                                            lane.t_end,
+                                            lane.h,
+                                            lane.h_next,
+                                            states,
+                                            memory<R>() + layout::parameter,
+                                            lane.shared,
+                                            lane.shared_integer,
+                                            memory<R>() + layout::accessory,
+                                            integer_accessories<R>(),
+                                            lane.index,
+                                            lane.phase,
+                                            detail::first_of(lane.event_count)};
+            wanted = detail::action_of([&]() MYRIAD_LAMBDA { return hook(whole); });
+        }
+        together::synchronise();
+        MYRIAD_UNROLL
+        for (int c = 0; c < n_state; ++c) lane.y[c] = states[whole_state(c)];
+        lane.h_next = together::of_leader(lane.h_next);
+        if constexpr (writes_time_domain) {
+            lane.t_begin = together::of_leader(lane.t_begin);
+            lane.t_end = together::of_leader(lane.t_end);
+        }
+        return static_cast<action>(together::of_leader(static_cast<int>(wanted)));
     }
 
     /// The slopes of the thread's units.
@@ -167,7 +348,7 @@ struct part_of_units {
                 of_team[layout::state + c * units + unit_of(part)] = y[part * states_of_unit + c];
         }
         together::synchronise();
-        const team_inputs<R> inputs{of_team + layout::parameter, p.shared, p.shared_integer, {}, {}};
+        const team_inputs<R> inputs = inputs_of_team<R>(p);
         const auto inputs_of = [&](int unit) MYRIAD_LAMBDA {
             return unit_inputs<unit_type, units, R, R, team_inputs<R>>(inputs, unit);
         };

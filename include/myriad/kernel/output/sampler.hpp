@@ -159,10 +159,12 @@ private:
         args.sample.time[cell] = t;
         MYRIAD_UNROLL
         for (int c = 0; c < n; ++c) {
-            if (args.sample_column[c] >= 0)
-                args.sample.values[args.sample_column[c] * (args.size * args.sample.capacity) + cell] = y[c];
+            const int column = args.sample_column[detail::whole_state<Model>(c)];
+            if (column >= 0) args.sample.values[column * (args.size * args.sample.capacity) + cell] = y[c];
         }
-        ++stored;
+        team_for<Model>::synchronise();  // all have read the number
+        if (team_for<Model>::leads()) ++stored;
+        team_for<Model>::synchronise();
     }
 };
 

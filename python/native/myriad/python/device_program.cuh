@@ -17,7 +17,7 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 
 template <class Model, class Method, class R, shared_placement placement>
 __device__ __forceinline__ void tell_facts(python::device_facts* to) {
-    *to = {compiled_facts_of<Model, Method, R>, traits_of<Model, Method, R>, placement};
+    *to = {compiled_facts_of<Model, Method, R>, traits_of<model_of_thread<Model, Method, R>, Method, R>, placement};
 }
 
 /// Adds up the values of a warp's threads; its first thread has the sum.
@@ -62,8 +62,9 @@ __device__ __forceinline__ void find_not_finite(const R* values, std::int64_t si
     extern "C" __global__ void myriad_find_not_finite(const R* values, std::int64_t size, unsigned long long* first) { \
         myriad::detail::find_not_finite(values, size, first);                                                          \
     }                                                                                                                  \
-    extern "C" __global__ void __launch_bounds__(myriad::detail::max_block_size<Model>()) myriad_integrate(            \
-        const __grid_constant__ myriad::detail::launch_arguments<Model, R, myriad::shared_placement::place>            \
+    using myriad_part = myriad::detail::model_of_thread<Model, Method, R>;                                             \
+    extern "C" __global__ void __launch_bounds__(myriad::detail::max_block_size<myriad_part>()) myriad_integrate(      \
+        const __grid_constant__ myriad::detail::launch_arguments<myriad_part, R, myriad::shared_placement::place>      \
             arguments) {                                                                                               \
-        myriad::detail::integrate_thread<Model, Method, R, myriad::shared_placement::place>(arguments);                \
+        myriad::detail::integrate_thread<myriad_part, Method, R, myriad::shared_placement::place>(arguments);          \
     }
