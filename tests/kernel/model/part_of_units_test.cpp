@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Teams of threads on a GPU find what one thread and the CPU find; on the CPU, their size means nothing. How their
 // threads work together is tested, without a GPU, in team_test.cpp.
+#include <cmath>
 #include <cstdint>
 #include <limits>
 
@@ -78,6 +79,33 @@ TEST_CASE("teams whose threads have one state each take the same steps as those 
 TEST_CASE("teams sum couplings as the CPU does") {
     const auto here = solved_on<myriad::cash_karp, teams::phases<16>>(tests::test_device());
     check_same(here, solved_on<myriad::cash_karp, teams::phases<16>>(myriad::device::cpu(1)), rounding);
+}
+
+TEST_CASE("teams average errors as the CPU does") {
+    const auto here = solved_on<teams::averaged, teams::places<8>>(tests::test_device());
+    check_same(here, solved_on<teams::averaged, teams::places<8>>(myriad::device::cpu(1)), rounding);
+}
+
+TEST_CASE("teams locate events, call hooks and sample as the CPU does") {
+    auto options = options_for<teams::hoppers<8>>();
+    for (int unit = 0; unit < teams::hoppers<8>::n_unit; ++unit) {
+        options.events.push_back({.direction = myriad::direction::falling, .tolerance = 1e-9});
+        options.events.push_back({.tolerance = 1e-9});
+    }
+    options.samples = {.states = {0, 27}, .capacity = 20, .evenly = 11};
+    const auto here = solved_on<teams::sampled, teams::hoppers<8>>(tests::test_device(), options);
+    const auto there = solved_on<teams::sampled, teams::hoppers<8>>(myriad::device::cpu(1), options);
+    constexpr double after_landings = 1e-5;  // at which differences grow
+    check_same(here, there, after_landings);
+    CHECK((here.integer_accessory(0) == there.integer_accessory(0)).all());
+    CHECK(here.integer_accessory(0).minCoeff() > 0);
+    for (int c = 0; c < teams::hoppers<8>::n_accessory; ++c)
+        CHECK(((here.accessory(c) - there.accessory(c)).abs() <= after_landings).all());
+    CHECK((here.samples().stored() == there.samples().stored()).all());
+    for (const int c : {0, 27})
+        for (std::int64_t i = 0; i < instances; ++i)
+            for (int k = 0; k < here.samples().stored()[i]; ++k)
+                CHECK(std::abs(here.samples().state(c)(i, k) - there.samples().state(c)(i, k)) <= after_landings);
 }
 
 TEST_CASE("a report says how many threads integrate an instance together") {

@@ -9,9 +9,11 @@ using places_of_1 = places<1>;
 using places_of_8 = places<8>;
 using places_of_32 = places<32>;
 using phases_of_16 = phases<16>;
+using hoppers_of_8 = hoppers<8>;
 }  // namespace teams
 
 MYRIAD_INSTANTIATE(teams::places_of_1, myriad::tsitouras_5)
-MYRIAD_INSTANTIATE(teams::places_of_8, myriad::tsitouras_5)
+MYRIAD_INSTANTIATE(teams::places_of_8, myriad::tsitouras_5, teams::averaged)
 MYRIAD_INSTANTIATE(teams::places_of_32, myriad::tsitouras_5)
 MYRIAD_INSTANTIATE(teams::phases_of_16, myriad::cash_karp)
+MYRIAD_INSTANTIATE(teams::hoppers_of_8, teams::sampled)
