@@ -133,6 +133,24 @@ def test_what_waits_is_not_among_the_results():
     assert set(run.accessories) == {"count", "at", "log"}
 
 
+def test_triggers_are_written_as_cpp():
+    text = ramp(my.trigger((x > 1) & (my.time < 5), do={y: 1}, name="begins")).cpp()
+    assert "enum event { begins_side_1, begins_side_2, n_event };" in text
+    assert "return !positive[begins_side_1] && !positive[begins_side_2];" in text
+    assert "static void after_trigger(int, auto& lane) {" in text
+    assert "queue" not in text and "trigger" not in my.model({x: 1}).cpp()
+    waits = ramp(my.trigger(x > 1, do={y: x}, delay=1, room=3, values_from_trigger_time=True)).cpp()
+    assert "#include <myriad/action_queue.hpp>" in waits
+    assert "using queue = myriad::action_queue<due_time_1, due_action_1, 3, 1>;" in waits
+
+
+def test_a_study_has_triggers(tmp_path):
+    model = ramp(my.trigger(x > lag, do={y: y + 1}, delay=1))
+    table = my.study(model, {"lag": np.arange(5.0)}, start={"x": 0, "y": 0}, time=(0, 3.5), interpreted=True,
+                     keep=["y"]).run(tmp_path / "store", device="cpu")
+    np.testing.assert_array_equal(table["y"], [1, 1, 1, 0, 0])
+
+
 @pytest.mark.parametrize("make, message", [
     (lambda: ramp(my.trigger(x == 1)), "`x == 1` in trigger trigger_1 holds or fails for an instant"),
     (lambda: ramp(my.trigger((x > 1) & my.is_finite(x))), r"`is_finite\(x\)` in trigger trigger_1 .*is no comparison"),
