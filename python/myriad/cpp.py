@@ -577,8 +577,9 @@ class Writer:
     def actions(self) -> list[list[str]]:
         """The functions of events, stops and triggers that a model has."""
         model = self.model
-        at_stops = self.acting(model.stops) + [(model.queue.stop, self.due())] if model.queue else self.acting(
-            model.stops)
+        at_stops = self.acting(model.stops)
+        if model.queue:
+            at_stops.append((model.queue.stop, self.due(model.queue.seed)))
         blocks = []
         if model.triggers:
             blocks += [self.condition(), *self.flags(), self.action(
@@ -662,7 +663,7 @@ class Writer:
         return [*body.lines, f"const bool fits = queue::put({', '.join(arguments)});",
                 "return fits ? myriad::action::proceed : myriad::action::overflow;"]
 
-    def due(self) -> list[str]:
+    def due(self, seed: int) -> list[str]:
         """What happens at the time of an action that has waited."""
         n, triggers = self.names, self.model.triggers
         lines, priority = [], ""
@@ -673,7 +674,10 @@ class Writer:
             name = body._name("priority")
             lines = [*body.lines, f"const {n.R} {name}[] = {{{', '.join(values)}}};"]
             priority = f", [&](int action) MYRIAD_LAMBDA {{ return {name}[action]; }}"
+        elif seed >= 0:
+            priority = ", [](int) MYRIAD_LAMBDA { return 0; }"
         taken = n.taken_action
         acting = [(str(number), self.done(t.do)) for number, t in enumerate(triggers) if t.do]
+        priority += f", {seed}" if seed >= 0 else ""
         return [*lines, f"const auto {taken} = queue::take({n.lane}{priority});",
                 *self.branches(f"{taken}.action", acting, len(triggers))]

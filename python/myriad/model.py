@@ -138,7 +138,8 @@ def model(equations: ByComponent | Callable[..., Any] | str, *, events: Event | 
           accessories: ByComponent | None = None, initialise: ByComponent | None = None,
           after_step: ByComponent | None = None, finalise: ByComponent | None = None,
           generate: ByComponent | None = None, states: Names | None = None, parameters: Names = (),
-          shared: Names = (), mass_matrix: npt.ArrayLike | ByComponent | None = None, name: str | None = None) -> Model:
+          shared: Names = (), mass_matrix: npt.ArrayLike | ByComponent | None = None, tie_seed: int | None = None,
+          name: str | None = None) -> Model:
     """Records a model.
 
     `equations` is a dictionary {state: its derivative}; or a function f(t, y, ...) that returns the derivatives, as for
@@ -160,9 +161,12 @@ def model(equations: ByComponent | Callable[..., Any] | str, *, events: Event | 
     columns in the order of the states, the numbers of a diagonal, or {state: factor of its derivative}, 1 if it is not
     named. It may be singular, so that equations are algebraic, if these determine their states (index one):
     `mass_matrix={c: 0}` makes 0 = f of the equation of c. For the method "rodas_5p" alone.
+
+    `tie_seed`, a whole number, puts actions of triggers that are due at one instant with the same priority into an
+    order that is random from instance to instance, and follows from it: the same in every run and on every device.
     """
     return Model(equations, events, accessories, initialise, after_step, finalise, generate, states, parameters, shared,
-                 name, stops, mass_matrix, triggers)
+                 name, stops, mass_matrix, triggers, tie_seed)
 
 
 class Model(kinds.ComponentNames):
@@ -175,7 +179,7 @@ class Model(kinds.ComponentNames):
                  finalise: ByComponent | None, generate: ByComponent | None, states: Names | None, parameters: Names,
                  shared: Names, name: str | None, stops: Stop | Sequence[Stop] = (),
                  mass_matrix: npt.ArrayLike | ByComponent | None = None,
-                 triggers: Trigger | Sequence[Trigger] = ()) -> None:
+                 triggers: Trigger | Sequence[Trigger] = (), tie_seed: int | None = None) -> None:
         self.line = users_line()
         self.hidden: frozenset[str] = frozenset()  # accessories that no user has named
         self._source: str | None = None
@@ -188,8 +192,8 @@ class Model(kinds.ComponentNames):
         self.events = self._events(events)
         self.stops = self._stops(stops)
         self.triggers = self._triggers(triggers, targets)
-        self.edges: list[Edge] = list(edges_of(self.triggers))
-        self.queue = Queue(self.triggers) if needs_queue(self.triggers) else None
+        self.queue = Queue(self.triggers, tie_seed) if needs_queue(self.triggers) or tie_seed is not None else None
+        self.edges: list[Edge] = list(edges_of(self.triggers, self.queue))
         if self.queue is not None:
             self.hidden = frozenset(self.queue.accessories + self.queue.integers)
         start = self._accessories(accessories)

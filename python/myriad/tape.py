@@ -252,7 +252,7 @@ def _tape(writer: Writer, model: Model) -> _core.Tape:
     return _core.Tape(writer.functions, writer.codes, writer.values, writer.registers,
                       [i for i, e in enumerate(edges) if not e.initial_value],
                       [i for i, e in enumerate(edges) if not e.persistent], where_waiting,
-                      -1 if queue is None else len(model.stops))
+                      *((-1, -1) if queue is None else (len(model.stops), queue.seed)))
 
 
 def give_model(library: _core.Library, model: AnyModel, components: Components, method: str) -> None:

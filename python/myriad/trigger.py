@@ -49,10 +49,10 @@ def trigger(condition: Written, *, do: ByComponent | None = None, delay: Written
     `queue_overflow`. If `persistent` is false, what waits is dropped where the condition ceases to hold. The values of
     `do` are those at the action, or with `values_from_trigger_time` those where the condition came to hold.
 
-    Of the actions of one instant that with the largest `priority` comes first; those without one come last, in the
-    order in which they were triggered. Delay and priority may be expressions: a delay counts where the condition comes
-    to hold, a priority at the action. `initial_value` is what the condition counts as before the start: with False, one
-    that holds at the start comes to hold there.
+    Of the actions of one instant that with the largest `priority` comes first; those without one come last. Else the
+    first that was triggered comes first, unless the model has a `tie_seed`. Delay and priority may be expressions: a
+    delay counts where the condition comes to hold, a priority at the action. `initial_value` is what the condition
+    counts as before the start: with False, one that holds at the start comes to hold there.
     """
     line = at(users_line())
     if room is not None and (isinstance(room, bool) or not isinstance(room, (int, np.integer)) or room < 1):
@@ -73,7 +73,11 @@ class Queue:
 
     stop = "due"  #: the kind of stop times at which they run
 
-    def __init__(self, triggers: Sequence[Trigger]) -> None:
+    def __init__(self, triggers: Sequence[Trigger], seed: int | None) -> None:
+        if not triggers or seed is not None and (isinstance(seed, bool) or not isinstance(seed, (int, np.integer)) or
+                                                 not 0 <= seed < 2**63):
+            raise Error(f"tie_seed is {seed!r}{at(users_line())}: give a model with triggers a whole number from 0 on")
+        self.seed = -1 if seed is None else int(seed)  #: of the order of actions of one priority; -1: as triggered
         self.capacity, self.values = sum(t.room for t in triggers), max(len(t.values) for t in triggers)
         places = range(1, self.capacity + 1)
         self.accessories = [f"due_time_{i}" for i in places]
@@ -96,11 +100,11 @@ def needs_queue(triggers: Sequence[Trigger]) -> bool:
     return any(t.delay is not None or t.priority is not None or t.values_from_trigger_time for t in triggers)
 
 
-def edges_of(triggers: Sequence[Trigger]) -> Iterator[Edge]:
+def edges_of(triggers: Sequence[Trigger], queue: Queue | None) -> Iterator[Edge]:
     """The edges of the triggers, in their order, and then those where conditions cease to hold."""
     for one in triggers:
         yield Edge(str(one.name), one.condition, starts=one)
-    if needs_queue(triggers):
+    if queue is not None:
         for number, one in enumerate(triggers):
             if not one.persistent:
                 yield Edge(f"{one.name}_ceases", opposite(one.condition), drops=number)

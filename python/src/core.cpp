@@ -497,7 +497,7 @@ NB_MODULE(_core, m) {
                                                           const std::vector<std::array<int, 4>>& registers,
                                                           const std::vector<int>& false_at_first,
                                                           const std::vector<int>& lapsing,
-                                                          const std::array<int, 4>& queue, int due) {
+                                                          const std::array<int, 4>& queue, int due, std::int64_t seed) {
         require(codes.size() == values.size() && codes.size() == registers.size(), "a tape's parts differ in length");
         std::vector<tape_step> steps;
         for (std::size_t i = 0; i < codes.size(); ++i) {
@@ -510,7 +510,7 @@ NB_MODULE(_core, m) {
         }
         require(queue[3] <= tape_values, "actions that wait have at most ", tape_values, " values");
         new (self) interpreted(functions, std::move(steps),
-                               {false_at_first, lapsing, {queue[0], queue[1], queue[2], queue[3]}, due});
+                               {false_at_first, lapsing, {queue[0], queue[1], queue[2], queue[3]}, due, seed});
     });
     nb::class_<library>(m, "Library")
         .def(nb::init<const std::string&>())

@@ -17,11 +17,12 @@ namespace myriad::python {
 using tape_functions = std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>>;
 
 /// What a tape has besides its functions: numbers of triggers whose initial value is false, and of those that do not
-/// persist; the queue, and the stop at which its actions run.
+/// persist; the queue, the stop at which its actions run, and the seed of their order.
 struct tape_triggers {
     std::vector<int> false_at_first, lapsing;
     tape_queue queue;
     int due = -1;
+    std::int64_t seed = -1;
 };
 
 /// A tape with its memory. Throws `error` if it is not a valid one.

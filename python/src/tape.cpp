@@ -84,6 +84,7 @@ interpreted::interpreted(const tape_functions& functions, std::vector<tape_step>
     for (const int trigger : triggers.lapsing) tape_.lapsing |= std::uint64_t{1} << trigger;
     tape_.queue = triggers.queue;
     tape_.due = triggers.due;
+    tape_.seed = triggers.seed;
 }
 
 void start_tape_team(openmp::team* all) {

@@ -154,7 +154,8 @@ struct tape {
 #undef MYRIAD_TAPE_MEMBER
     std::uint64_t false_at_first = 0, lapsing = 0;  ///< triggers whose initial value is false; that do not persist
     tape_queue queue;
-    int due = -1;  ///< the stop at which actions run that have waited
+    int due = -1;            ///< the stop at which actions run that have waited
+    std::int64_t seed = -1;  ///< of their order where priorities tie; -1: that in which they were put
 };
 
 /// The tape that the calling thread runs.

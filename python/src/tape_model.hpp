@@ -394,11 +394,12 @@ struct triggered_tape_model : tape_model<size> {
     MYRIAD_FUNCTION static myriad::action after_stop(int stop, int, auto& lane) {
         if (stop != current_tape->due) return tape_model<size>::hook(current_tape->after_stop[stop], lane);
         tape_action waiting;
-        const auto taken = queue::take(lane, [&](int action) {
+        const auto priority = [&](int action) {
             tape_action one;
             tape_model<size>::hook(current_tape->priority[action], lane, &one);
             return one.priority;
-        });
+        };
+        const auto taken = queue::take(lane, priority, current_tape->seed);
         waiting.value = taken.value;
         return tape_model<size>::hook(current_tape->late_action[taken.action], lane, &waiting);
     }

@@ -104,6 +104,19 @@ def test_the_largest_priority_comes_first(priorities, expected):
     assert after(ramp(*both, parameters=["lag"]), values={"lag": 3})["count"] == expected
 
 
+def test_the_order_of_ties_is_random_and_follows_from_the_seed():
+    def orders(seed, interpreted=True, **priorities):
+        both = [my.trigger(x > 1, do={count: 10 * count + i}, priority=priorities.get(f"p{i}")) for i in (1, 2)]
+        return after(ramp(*both, tie_seed=seed, parameters=["lag"]), values={"lag": np.zeros(200)},
+                     interpreted=interpreted)["count"]
+
+    found = orders(3)
+    assert set(found) == {12, 21} and 70 < np.sum(found == 12) < 130
+    np.testing.assert_array_equal(found, orders(3, interpreted=False))
+    assert np.any(found != orders(4))
+    assert set(orders(3, p2=1)) == {21}
+
+
 def test_stops_and_events_stand_beside_triggers():
     model = ramp(my.trigger(x > 1, do={y: y + 1}, delay=1), stops=my.stop([2, 4], do={y: 10 * y}),
                  events=my.event(x - 3, name="third", do={log: y}))
@@ -158,6 +171,8 @@ def test_a_study_has_triggers(tmp_path):
     (lambda: ramp(my.trigger(True)), "the condition of trigger trigger_1.* always holds"),
     (lambda: ramp(my.trigger(x > 1, delay=-1)), "the delay of trigger trigger_1.* is -1: it is a time"),
     (lambda: ramp(my.trigger(x > 1, delay=x > 2)), "trigger trigger_1: `x > 2` is a condition and not a number"),
+    (lambda: ramp(my.trigger(x > 1), tie_seed=-1), "tie_seed is -1.*whole number from 0 on"),
+    (lambda: ramp(tie_seed=1), "give a model with triggers a whole number"),
     (lambda: my.trigger(x > 1, room=0), "the room of a trigger is 0"),
     (lambda: my.trigger(x > 1, persistent="no"), "persistent of a trigger is 'no'"),
     (lambda: my.trigger(x > 1, name="int"), "keyword of C"),

@@ -42,8 +42,7 @@ struct basic_action_queue {
     /// Puts an action, which runs at `time`, or now if that has passed. Times that differ by less than 1e-10 of
     /// themselves are one, as rounding is not to decide which action comes first. Returns whether there was room.
     template <class Lane, class R>
-    static MYRIAD_LARGE_FUNCTION bool put(Lane& lane, int action, const R& time,
-                                          const vec<R, most_values>& value = {}) {
+    static MYRIAD_FUNCTION bool put(Lane& lane, int action, const R& time, const vec<R, most_values>& value = {}) {
         using Real = std::remove_cvref_t<decltype(lane.t)>;
         const Layout at{};
         bool has_room = false;
@@ -70,7 +69,7 @@ struct basic_action_queue {
     /// random numbers of the instance's own: the first word of Philox4x32-10 for the key `seed` and the counter (number
     /// of the put, 0, low and high word of `lane.index`), the smallest first. Or in the order in which they were put.
     template <class Lane, class Priority>
-    static MYRIAD_LARGE_FUNCTION auto take(Lane& lane, Priority&& priority, std::int64_t seed = in_order) {
+    static MYRIAD_FUNCTION auto take(Lane& lane, Priority&& priority, std::int64_t seed = in_order) {
         using R = std::remove_cvref_t<decltype(lane.t)>;
         const Layout at{};
         entry<R> taken{-1, {}};
@@ -104,7 +103,7 @@ struct basic_action_queue {
     }
     /// Removes all that wait with that number: an action that must not outlast its condition.
     template <class Lane>
-    static MYRIAD_LARGE_FUNCTION void cancel(Lane& lane, int action) {
+    static MYRIAD_FUNCTION void cancel(Lane& lane, int action) {
         const Layout at{};
         MYRIAD_UNROLL_ON_GPU
         for (int i = 0; i < at.capacity; ++i)
