@@ -32,6 +32,7 @@ from .study_result import Damage as Damage, StudyResult as StudyResult, open_stu
 from .symbols import *  # noqa: F403
 from .table import *  # noqa: F403
 from .tangents import *  # noqa: F403
+from .trigger import *  # noqa: F403
 from .units import *  # noqa: F403
 from .xpp import XppModel as XppModel, read_xpp as read_xpp
 
@@ -42,7 +43,7 @@ _public = ["CppModel", "Damage", "Error", "EventChoice", "Interrupted", "Options
            "methods", "open_study", "plots", "read_antimony", "read_petab", "read_sbml", "read_xpp", "reduce", "solve",
            "status_names", "study", "verify",
            *(name for part in ("axes", "function", "expression", "fit", "grid", "interpolate", "least_squares", "model",
-                               "sensitivities", "symbols", "table", "tangents", "units")
+                               "sensitivities", "symbols", "table", "tangents", "trigger", "units")
              for name in _sys.modules[f"{__name__}.{part}"].__all__)]
 # What `from myriad import *` brings: nothing that has the name of a function of Python's, such as abs.
 __all__ = [name for name in _public if not hasattr(_builtins, name)]

@@ -53,7 +53,7 @@ class Components:
     """Where a model's components are: the kind and number of each name."""
 
     def __init__(self, model: AnyModel) -> None:
-        self.names = kinds.names_of(model)
+        self.names, self.counts = kinds.names_of(model), kinds.counts_of(model)
         self.states, self.event_names = self.names["state"], self.names["event"]
         self.tables = getattr(model, "shared_values", {})  # shared values that the model itself has
         self.defaults = getattr(model, "defaults", self.tables)  # of components that need not be given

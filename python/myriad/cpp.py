@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from .expression import Node
     from .hints import Assignments
     from .model import Event, Model, Stop
+    from .trigger import Edge, Queue
 
 _columns = 116  # inside the struct
 _deepest = 50  # operations within each other in one statement: compilers limit the depth of parentheses
@@ -93,6 +94,8 @@ class Names:
         self.R = self._free("R", "S", "Real", "R_")
         self.lane = self._free("lane", "instance", "lane_")
         self.number = self._free("number", "k_", "number_")
+        self.positive = self._free("positive", "is_positive", "positive_")
+        self.taken_action = self._free("taken", "action_due", "taken_")
         self.of_lane = f"std::remove_cvref_t<decltype({self.lane}.t)>"  # the type of its numbers
         self.real_of_lane = f"myriad::real_of<{self.of_lane}>"
 
@@ -276,6 +279,7 @@ class Body:
 
 def _wrap(line: str, indent: int) -> list[str]:
     """A statement in lines of at most 120 columns, broken after commas and operators."""
+    indent += len(line) - len(line := line.lstrip())
     first, rest = " " * indent, " " * (indent + 4)
     if len(first) + len(line) <= _columns:
         return [first + line]
@@ -315,7 +319,8 @@ class Writer:
     def header(self, name: str) -> str:
         model = self.model
         out = ["// SPDX-License-Identifier: MIT", "// Written by Myriad's Python package from a traced model.",
-               "#pragma once", "", "#include <myriad/model.hpp>", ""]
+               "#pragma once", "", *["#include <myriad/action_queue.hpp>"] * bool(model.queue),
+               "#include <myriad/model.hpp>", ""]
         macros = [n for n in model.component_names if re.search("[A-Z]{2}", n)]  # maybe, in headers of C
         out += [f"#undef {name}" for name in macros] + [""] * bool(macros)
         out += [f"/// {line}" for line in self.description()]
@@ -326,6 +331,8 @@ class Writer:
             if names:
                 written = ", ".join(last_elements.get(n, n) if kind == "shared" else n for n in names)
                 out += ["    " + line for line in _wrap(f"enum {kind} {{ {written}, n_{kind} }};", 0)]
+        if model.queue:
+            out += ["    " + line for line in _wrap(self.queue_type(model.queue), 0)]
         if model.summaries:
             out.append("    static constexpr myriad::summary summaries[] = {")
             out += [f"        {{{r.observed}, myriad::over_phase::{r.kind}, {r.accessory}}}," for r in model.summaries]
@@ -344,12 +351,7 @@ class Writer:
             blocks.append(self.hook("initialise", model.initialise))
         if model.after_step:
             blocks.append(self.after_step())
-        if any(e.do for e in model.events):
-            blocks.append(self.action("event", model.events))
-        if model.stops:
-            blocks.append(self.stop_time())
-            if any(s.do for s in model.stops):
-                blocks.append(self.action("stop", model.stops, ", int"))
+        blocks += self.actions()
         if model.finalise:
             blocks.append(self.hook("finalise", model.finalise))
         if model.generate:
@@ -459,11 +461,15 @@ class Writer:
                 value = f"myriad::infinity_of<{n.R}>"
                 for number, time in reversed(list(enumerate(one.times))):
                     value = f"{n.number} == {number} ? {n.R}({body.text(time)}) : {value}"
-            lines.append((f"if (stop == {one.name}) " if i + 1 < len(stops) else "") + f"return {value};")
+            is_last = i + 1 == len(stops) and not self.model.queue
+            lines.append(("" if is_last else f"if (stop == {one.name}) ") + f"return {value};")
+        if self.model.queue:
+            lines.append(f"return queue::next_time({n.p});")
         used = [node for s in stops for node in walk(s.values) if node.op in ("symbol", "element", "lookup",
                                                                               "find_interval", "dot")]
-        which = "int stop" if len(stops) > 1 else "int"
-        arguments = f"{which}, int {n.number}, const auto&" + (f" {n.p}" if used else "")
+        which = "int stop" if len(stops) + bool(self.model.queue) > 1 else "int"
+        number = f"int {n.number}" if stops else "int"
+        arguments = f"{which}, {number}, const auto&" + (f" {n.p}" if used or self.model.queue else "")
         return [f"template <class {n.R}>", f"MYRIAD_FUNCTION static {n.R} stop_time({arguments}) {{",
                 *(wrapped for line in body.lines + lines for wrapped in _wrap(line, 4)), "}"]
 
@@ -473,6 +479,8 @@ class Writer:
         lane, (kind, name) = self.names.lane, node.value
         if kind == "built-in":
             return f"{lane}.{_headers[name]}"
+        if kind == "waiting":
+            return f"{self.names.taken_action}.value[{name}]"
         member = {"state": "y"}.get(kind, kind)
         return f"{lane}.{member}[{name}]"
 
@@ -500,7 +508,8 @@ class Writer:
                 written = body.text(value)
             if target.type == real and value.type == integer and value.op != "constant":
                 written = f"{self.names.R}({written})"
-            if value.op == "symbol" and value.value == ("built-in", "instance") and target.type == integer:
+            if target.type == integer and (value.type == real or value.op == "symbol" and
+                                           value.value == ("built-in", "instance")):
                 written = f"static_cast<std::int32_t>({written})"
             statement = f"{self.in_hook(target)} {operator} {written};"
             body.lines.append(statement if only_if is None else f"if ({body.text(only_if)}) {statement}")
@@ -563,28 +572,112 @@ class Writer:
         return [f"template <class {n.R}>", f"MYRIAD_FUNCTION static {result} after_step(auto& {n.lane}) {{",
                 *(wrapped for line in lines for wrapped in _wrap(line, 4)), "}"]
 
-    def action(self, what: str, which: Sequence[Event] | Sequence[Stop], further: str = "") -> list[str]:
-        """The hook after an event or a stop."""
+    # Actions: of events, stops and triggers
+
+    def actions(self) -> list[list[str]]:
+        """The functions of events, stops and triggers that a model has."""
+        model = self.model
+        at_stops = self.acting(model.stops)
+        if model.queue:
+            at_stops.append((model.queue.stop, self.due(model.queue.seed)))
+        blocks = []
+        if model.triggers:
+            blocks += [self.condition(), *self.flags(), self.action(
+                "trigger", [(e.name, self.triggered(e)) for e in model.edges], len(model.edges))]
+        if model.stop_names:
+            blocks.append(self.stop_time())
+        at_events = self.acting(model.events)
+        return [*([self.action("event", at_events, len(model.events))] if at_events else []), *blocks,
+                *([self.action("stop", at_stops, len(model.stop_names), ", int")] if at_stops else [])]
+
+    def done(self, assignments: Assignments) -> list[str]:
+        """The statements of an action."""
+        lines, conditions = self.statements(assignments, scalar=True)
+        return lines + (self.returned(conditions) if conditions else [])
+
+    def acting(self, which: Sequence[Event] | Sequence[Stop]) -> list[tuple[str, list[str]]]:
+        """The names and statements of those that have actions."""
+        return [(str(e.name), self.done(e.do)) for e in which if e.do]
+
+    def action(self, what: str, acting: list[tuple[str, list[str]]], among: int, further: str = "") -> list[str]:
+        """The hook after an event, a stop or a trigger, from the names and statements of those that act `among` all."""
         n = self.names
-        acting = [e for e in which if e.do]
-        ends = any(t.value[0] == "action" for e in acting for t, _ in e.do)
-        lines = []
-        for i, one in enumerate(acting):
-            statements, conditions = self.statements(one.do, scalar=True)
-            if conditions:
-                statements += self.returned(conditions)
-            if len(which) == 1:
-                lines += statements
-            elif i == len(which) - 1:
-                lines += ["} else {", *("    " + s for s in statements)]
-            else:
-                start = f"if ({what} == {one.name}) {{"
-                lines += ["} else " + start if i else start, *("    " + s for s in statements)]
-        if len(which) > 1:
-            lines.append("}")
-        if ends and not (len(which) == 1 and lines[-1].startswith("return")):
+        lines = self.branches(what, acting, among)
+        ends = any("return" in line for line in lines)
+        if ends and not (among == 1 and lines[-1].startswith("return")):
             lines.append("return myriad::action::proceed;")
-        number = f"int {what}" if len(which) > 1 else "int"
+        number = f"int {what}" if among > 1 else "int"
         result = "myriad::action" if ends else "void"
         return [f"MYRIAD_FUNCTION static {result} after_{what}({number}{further}, auto& {n.lane}) {{",
                 *self.block(lines), "}"]
+
+    @staticmethod
+    def branches(what: str, acting: list[tuple[str, list[str]]], among: int) -> list[str]:
+        """Statements, of which those of the name that `what` is equal to run."""
+        if among == 1:
+            return [line for _, statements in acting for line in statements]
+        lines: list[str] = []
+        for i, (name, statements) in enumerate(acting):
+            start = "" if i == among - 1 else f"if ({what} == {name}) "
+            lines += [f"}} else {start}{{" if i else start + "{", *("    " + s for s in statements)]
+        return [*lines, "}"] if lines else []
+
+    def queue_type(self, queue: Queue) -> str:
+        """The queue of the actions that wait."""
+        room = f"{queue.capacity}" + (f", {queue.values}" if queue.values else "")
+        return f"using queue = myriad::action_queue<{queue.accessories[0]}, {queue.integers[0]}, {room}>;"
+
+    def condition(self) -> list[str]:
+        """The function with the conditions of all triggers."""
+        n, edges = self.names, self.model.edges
+        body = Body([e.condition for e in edges], n, lambda node: f"{n.positive}[{node.value[1]}]", scalar=True)
+        lines = [f"if (trigger == {e.name}) return {body.text(e.condition)};" for e in edges[:-1]]
+        lines.append(f"return {body.text(edges[-1].condition)};")
+        which = "int trigger" if len(edges) > 1 else "int"
+        return [f"MYRIAD_FUNCTION static bool condition({which}, const auto& {n.positive}) {{",
+                *self.block(body.lines + lines), "}"]
+
+    def flags(self) -> list[list[str]]:
+        """The functions that say what triggers have; without them all have it."""
+        blocks = []
+        for what in ("initial_value", "persistent"):
+            without = [f"trigger != {e.name}" for e in self.model.edges if not getattr(e, what)]
+            if without:
+                returned = _wrap(f"return {' && '.join(without)};", 4)
+                blocks.append([f"MYRIAD_FUNCTION static bool {what}(int trigger) {{", *returned, "}"])
+        return blocks
+
+    def triggered(self, edge: Edge) -> list[str]:
+        """What happens where a condition comes to hold: an action runs, or is put into the queue or dropped there."""
+        n, one, queue = self.names, edge.starts, self.model.queue
+        if one is None:
+            return [f"queue::cancel({n.lane}, {edge.drops});"]
+        if queue is None:
+            return self.done(one.do)
+        delay = [] if one.delay is None else [one.delay]
+        body = Body([*delay, *one.values], n, self.in_hook, scalar=True)
+        values = [f"{n.R}({body.text(v)})" for v in one.values] + [f"{n.R}(0)"] * (queue.values - len(one.values))
+        arguments = [n.lane, str(self.model.triggers.index(one)), f"{n.lane}.t"]
+        arguments[2:] = [f"{arguments[2]} + {body.text(one.delay)}"] if delay else arguments[2:]
+        arguments += [f"{{{', '.join(values)}}}"] if values else []
+        return [*body.lines, f"const bool fits = queue::put({', '.join(arguments)});",
+                "return fits ? myriad::action::proceed : myriad::action::overflow;"]
+
+    def due(self, seed: int) -> list[str]:
+        """What happens at the time of an action that has waited."""
+        n, triggers = self.names, self.model.triggers
+        lines, priority = [], ""
+        if len(triggers) > 1 and any(t.priority is not None for t in triggers):
+            body = Body([t.priority for t in triggers if t.priority is not None], n, self.in_hook, scalar=True)
+            values = [f"-myriad::infinity_of<{n.R}>" if t.priority is None else f"{n.R}({body.text(t.priority)})"
+                      for t in triggers]
+            name = body._name("priority")
+            lines = [*body.lines, f"const {n.R} {name}[] = {{{', '.join(values)}}};"]
+            priority = f", [&](int action) MYRIAD_LAMBDA {{ return {name}[action]; }}"
+        elif seed >= 0:
+            priority = ", [](int) MYRIAD_LAMBDA { return 0; }"
+        taken = n.taken_action
+        acting = [(str(number), self.done(t.do)) for number, t in enumerate(triggers) if t.do]
+        priority += f", {seed}" if seed >= 0 else ""
+        return [*lines, f"const auto {taken} = queue::take({n.lane}{priority});",
+                *self.branches(f"{taken}.action", acting, len(triggers))]

@@ -19,6 +19,9 @@ class Extended(ComponentNames):
 
     def __init__(self, model: Model | CppModel, added: Mapping[str, list[str]], defaults: Mapping[str, Any],
                  what: str) -> None:
+        if getattr(model, "triggers", ()):
+            raise Error(f"the model has triggers{at(users_line())}, which {what} do not take: give events actions of "
+                        "their own")
         self.model, self.name = model, model.name
         names = {kind: [*known, *added.get(kind, ())] for kind, known in names_of(model).items()}
         self._set_names(names)

@@ -49,3 +49,9 @@ class ComponentNames:
 def names_of(model: Any) -> dict[str, list[str]]:
     """The names of a model's components by kind."""
     return {name: [getattr(one, "name", one) for one in getattr(model, kind.plural)] for name, kind in every.items()}
+
+
+def counts_of(model: Any) -> dict[str, int]:
+    """How many a model has of each kind, also of stops and triggers."""
+    counts = {kind: len(names) for kind, names in names_of(model).items()}
+    return {**counts, "stop": len(getattr(model, "stop_names", ())), "trigger": len(getattr(model, "edges", ()))}

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import copy
 import hashlib
 import inspect
 from collections.abc import Callable, Iterable, Sequence
@@ -21,6 +22,7 @@ from .mass_matrix import left_sides, read_mass_matrix
 from .methods import stiff
 from .parse import from_sympy, parse, parse_equations, sympy_name
 from .table import element_name, tables_of
+from .trigger import Edge, Queue, Sides, Trigger, check, edges_of, keep_values, needs_queue
 from .unit_form import unit_form
 from .units import only_units, spread, together
 from .whole_numbers import check_constants
@@ -136,10 +138,11 @@ def stop(time: Written | Sequence[Written], *, every: Written | None = None, cou
 
 
 def model(equations: ByComponent | Callable[..., Any] | str, *, events: Event | Sequence[Event] = (),
-          stops: Stop | Sequence[Stop] = (), accessories: ByComponent | None = None,
-          initialise: ByComponent | None = None, after_step: ByComponent | None = None,
-          finalise: ByComponent | None = None, generate: ByComponent | None = None, states: Names | None = None,
-          parameters: Names = (), shared: Names = (), mass_matrix: npt.ArrayLike | ByComponent | None = None,
+          stops: Stop | Sequence[Stop] = (), triggers: Trigger | Sequence[Trigger] = (),
+          accessories: ByComponent | None = None, initialise: ByComponent | None = None,
+          after_step: ByComponent | None = None, finalise: ByComponent | None = None,
+          generate: ByComponent | None = None, states: Names | None = None, parameters: Names = (),
+          shared: Names = (), mass_matrix: npt.ArrayLike | ByComponent | None = None, tie_seed: int | None = None,
           name: str | None = None) -> Model:
     """Records a model.
 
@@ -150,8 +153,8 @@ def model(equations: ByComponent | Callable[..., Any] | str, *, events: Event | 
 
     `accessories` {a: value} are set to the value at the start of every phase, or get a summary over the phase, as in
     {peak: myriad.phase_maximum(x)}. `initialise`, `after_step` and `finalise` are assignments {target: value} at the
-    start of a phase, after every step and at the end of a phase. Assignments of one hook, event or stop take effect
-    together: every value is computed from what was there before.
+    start of a phase, after every step and at the end of a phase. Assignments of one hook, event, stop or trigger take
+    effect together: every value is computed from what was there before.
 
     `generate` {target: value} sets states, parameters and accessories of the instances of a study, where they are
     integrated, after its axes: from the instance's number `myriad.instance`, from what axes and the study have set, and
@@ -162,9 +165,12 @@ def model(equations: ByComponent | Callable[..., Any] | str, *, events: Event | 
     columns in the order of the states, the numbers of a diagonal, or {state: factor of its derivative}, 1 if it is not
     named. It may be singular, so that equations are algebraic, if these determine their states (index one):
     `mass_matrix={c: 0}` makes 0 = f of the equation of c. For the method "rodas_5p" alone.
+
+    `tie_seed`, a whole number, puts actions of triggers that are due at one instant with the same priority into an
+    order that is random from instance to instance, and follows from it: the same in every run and on every device.
     """
     return Model(equations, events, accessories, initialise, after_step, finalise, generate, states, parameters, shared,
-                 name, stops, mass_matrix)
+                 name, stops, mass_matrix, triggers, tie_seed)
 
 
 class Model(kinds.ComponentNames):
@@ -176,7 +182,8 @@ class Model(kinds.ComponentNames):
                  accessories: ByComponent | None, initialise: ByComponent | None, after_step: ByComponent | None,
                  finalise: ByComponent | None, generate: ByComponent | None, states: Names | None, parameters: Names,
                  shared: Names, name: str | None, stops: Stop | Sequence[Stop] = (),
-                 mass_matrix: npt.ArrayLike | ByComponent | None = None) -> None:
+                 mass_matrix: npt.ArrayLike | ByComponent | None = None,
+                 triggers: Trigger | Sequence[Trigger] = (), tie_seed: int | None = None) -> None:
         self.line = users_line()
         self.hidden: frozenset[str] = frozenset()  # accessories that no user has named
         self._source: str | None = None
@@ -188,6 +195,11 @@ class Model(kinds.ComponentNames):
         self._names = {**{s.value[1]: s for s in targets + symbols_of(self.rhs) + others}, **self._declared}
         self.events = self._events(events)
         self.stops = self._stops(stops)
+        self.triggers = self._triggers(triggers, targets)
+        self.queue = Queue(self.triggers, tie_seed) if needs_queue(self.triggers) or tie_seed is not None else None
+        self.edges: list[Edge] = list(edges_of(self.triggers, self.queue))
+        if self.queue is not None:
+            self.hidden = frozenset(self.queue.accessories + self.queue.integers)
         start = self._accessories(accessories)
         self.initialise = start + self._assignments(initialise, "initialise", {t for t, _ in start})
         self.after_step = self._assignments(after_step, "after_step")
@@ -386,6 +398,30 @@ class Model(kinds.ComponentNames):
             made.append(one)
         return made
 
+    def _triggers(self, triggers: Trigger | Sequence[Trigger], states: list[Node]) -> list[Trigger]:
+        moving = {sym.time, *(s for s, rate in zip(states, self.rhs) if rate.value != 0)}
+        sides = Sides(lambda condition: not moving.intersection(symbols_of([condition])))
+        made = []
+        for i, given in enumerate([triggers] if isinstance(triggers, Trigger) else triggers):
+            if not isinstance(given, Trigger):
+                raise Error(f"triggers[{i}] is {type(given).__name__}{at(self.line)}: make it by "
+                            "myriad.trigger(condition, do=...)")
+            one = copy.copy(given)
+            one.name = given.name or f"trigger_{i + 1}"
+            what = f"trigger {one.name}"
+            one.condition = as_condition(self._value(given.condition, what))
+            one.delay, one.priority = (None if e is None else to_real(self._real(self._value(e, what), what))
+                                       for e in (given.delay, given.priority))
+            check(one, what)
+            one.condition = sides.of(one.condition, one.name)
+            one.do, one.values = self._assignments(given.do, what, line=given.line), []
+            if one.values_from_trigger_time:
+                one.do = keep_values(one)
+            made.append(one)
+        self.events = [*self.events,
+                       *(Event(function, name, "either", None, 0, []) for function, name in sides.functions.items())]
+        return made
+
     def _accessories(self, accessories: ByComponent | None) -> Assignments:
         self.summaries, self.observed, start = [], [], []
         quantities = {}
@@ -482,12 +518,15 @@ class Model(kinds.ComponentNames):
         """The components, in the order in which the equations, events, accessories and hooks first name them."""
         hooks = [("initialise", self.initialise), ("after_step", self.after_step), ("finalise", self.finalise)]
         hooks += [(f"event {e.name}", e.do) for e in self.events] + [(f"stop {s.name}", s.do) for s in self.stops]
+        hooks += [(f"trigger {t.name}", t.do) for t in self.triggers]
         times = [value for one in self.stops for value in one.values]
+        waits = [e for t in self.triggers for e in (t.delay, t.priority, *t.values) if e is not None]
         self._functions = self.rhs + [e.function for e in self.events] + [q for _, q in self.observed]
         self._in_functions = symbols_of(self._functions)
         found = targets + self._in_functions + symbols_of(times) + self._accessory_targets
         for _, assignments in hooks:
             found += [t for t, _ in assignments] + symbols_of([e for _, e in assignments])
+        found += symbols_of(waits)
         found += [t for t, _ in self.generate] + symbols_of([e for _, e in self.generate])
         components: dict[str, list[str]] = {kind: [] for kind in kinds.valued}
         declared = [s for s in self._declared.values() if s.value[0] in components]
@@ -502,12 +541,15 @@ class Model(kinds.ComponentNames):
             symbol = next(s for s in found + declared if s.value == ("state", missing[0]))
             raise Error(f"the state {missing[0]}{at(symbol.line)} has no equation{at(self.line)}: add its derivative, "
                         f"or make it a parameter if it is constant")
-        everything = walk(self._functions + times + [e for _, assignments in hooks for _, e in assignments])
+        if self.queue is not None:
+            components["accessory"] += self.queue.accessories
+            components["integer_accessory"] += self.queue.integers
+        everything = walk(self._functions + times + waits + [e for _, assignments in hooks for _, e in assignments])
         drawn = next((n for n in everything if n.op in draws), None)
         if drawn is not None:
             raise Error(f"`{text(drawn)}`{at(drawn.line)} is drawn in an equation, event or hook{at(self.line)}: "
                         "random numbers are for generate= alone; let it set a parameter")
-        check_constants(everything, [e for _, assignments in hooks for _, e in assignments])
+        check_constants(everything, waits + [e for _, assignments in hooks for _, e in assignments])
         everything += walk([e for _, e in self.generate])
         self.tables = tables_of(everything)
         self.shared_values = {element_name(t, i): float(v) for t in self.tables for i, v in enumerate(t.values.flat)}
@@ -518,15 +560,21 @@ class Model(kinds.ComponentNames):
         self.writes_parameters = any(kind == "parameter" for kind, _ in assigned)
         self.writes_time_domain = bool(assigned & {("built-in", "t_begin"), ("built-in", "t_end")})
         read = {s.value[0] for s in self._in_functions + symbols_of(times)}
-        self.accessories_are_outputs = any(components[kind] for kind in kinds.accessories) and not read & {
-            *kinds.accessories}
+        self.accessories_are_outputs = any(components[kind] for kind in kinds.accessories) and not (
+            self.queue or read & {*kinds.accessories})
         self._hooks = hooks
 
     def enumerations(self) -> list[tuple[str, list[str]]]:
         """(kind, names) of everything that has an enumeration in C++."""
         shared = self.scalar_shared + [name for t in self.tables for name in (t.name, f"{t.name}_last")]
         return [*{**kinds.names_of(self), "shared": shared}.items(), ("observed", [n for n, _ in self.observed]),
-                ("stop", [str(s.name) for s in self.stops])]
+                ("stop", self.stop_names),
+                ("trigger", [e.name for e in self.edges])]
+
+    @property
+    def stop_names(self) -> list[str]:
+        """The names of the kinds of stop times, those of actions that wait behind the others."""
+        return [*(str(s.name) for s in self.stops), *([self.queue.stop] if self.queue else [])]
 
     @property
     def component_names(self) -> list[str]:
@@ -564,10 +612,13 @@ class Model(kinds.ComponentNames):
                     if kind == "event_count" and name not in [e.name for e in self.events]:
                         raise Error(f"event_count('{name}') in {what}{at(self.line)} names no event: there are "
                                     f"{', '.join(e.name for e in self.events) or 'none'}")
-        taken = next((n for n in ("stop", "stop_time", "after_stop") if self.stops and n in kind_of), None)
-        if taken is not None:
-            raise Error(f"'{taken}' names {sym.a(kind_of[taken])}{at(self.line)}, and has a meaning of its own in a "
-                        f"model with stops: call it '{taken}_'")
+        for what, members, present in (
+                ("stops", "stop stop_time after_stop", self.stop_names),
+                ("triggers", "trigger condition after_trigger initial_value persistent queue", self.triggers)):
+            taken = next((n for n in members.split() if n in kind_of), None)
+            if taken is not None and present:
+                raise Error(f"'{taken}' names {sym.a(kind_of[taken])}{at(self.line)}, and has a meaning of its own in "
+                            f"a model with {what}: call it '{taken}_'")
         if self.name in kind_of:
             raise Error(f"the model has the name of its {kind_of[self.name]} '{self.name}'{at(self.line)}: give "
                         "it another one, name='...'")

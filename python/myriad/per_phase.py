@@ -105,10 +105,10 @@ def _rebuilt(roots: list[Expression], changed: Callable[[Node], Any],
 
 def _room(model: Model) -> int:
     """How many accessories a model may have more, and still be interpreted as fast as without them."""
-    names = kinds.names_of(model)
+    counts = kinds.counts_of(model)
     for limits in _core.tape_sizes.values():
-        if all(len(names[kind]) <= most for kind, most in limits.items()):
-            return limits["accessory"] - len(names["accessory"])
+        if all(counts[kind] <= most for kind, most in limits.items()):
+            return limits["accessory"] - counts["accessory"]
     return limits["accessory"]
 
 
@@ -122,5 +122,5 @@ def _prepared(model: Model) -> Model:
     made.initialise = [*parts.values.items(), *model.initialise]
     made._accessory_targets = [*model._accessory_targets, *parts.values]
     made._collect([sym.symbol("state", name) for name in model.states])
-    made.hidden = frozenset(a.value[1] for a in parts.values)
+    made.hidden = model.hidden | frozenset(a.value[1] for a in parts.values)
     return made

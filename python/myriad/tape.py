@@ -3,14 +3,15 @@
 
 from __future__ import annotations
 
+import math
 import weakref
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from . import _core, kinds
+from . import _core, kinds, symbols as sym
 from .compiler import Kernel
 from .errors import CannotInterpret, Error
-from .expression import integer, is_long, walk
+from .expression import constant, fma, integer, is_long, walk, where
 from .model import Model
 from .table import element_name
 
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
     from .components import Components
     from .expression import Node
     from .hints import AnyModel, Assignments
+    from .model import Event, Stop
+    from .trigger import Edge, Trigger
 
 methods = tuple(_core.interpreted_methods())
 _codes = {name: number for number, name in enumerate(_core.tape_operations())}
@@ -34,16 +37,16 @@ _of_whole_numbers = {"add": "wrapping_add", "subtract": "wrapping_subtract", "mu
 
 
 def _plural(kind: str) -> str:
-    return kinds.every[kind].plural.replace("_", " ")
+    return kinds.every[kind].plural.replace("_", " ") if kind in kinds.every else f"{kind}s"
 
 
 def _size_for(components: Components) -> str:
     """The smallest interpreter that has all components of a model."""
     for size, limits in _sizes.items():
-        if all(len(components.names[kind]) <= most for kind, most in limits.items()):
+        if all(components.counts[kind] <= most for kind, most in limits.items()):
             return size
-    kind, most = next((k, m) for k, m in limits.items() if len(components.names[k]) > m)
-    raise _refuse(f"it has {len(components.names[kind])} {_plural(kind)}, and the interpreter {most} at the most")
+    kind, most = next((k, m) for k, m in limits.items() if components.counts[k] > m)
+    raise _refuse(f"it has {components.counts[kind]} {_plural(kind)}, and the interpreter {most} at the most")
 
 
 class Writer:
@@ -55,7 +58,7 @@ class Writer:
         self.codes: list[int] = []
         self.values: list[float] = []
         self.registers: list[tuple[int, int, int, int]] = []
-        self.functions: list[tuple[int, int]] = []
+        self.functions: list[list[tuple[int, int]]] = [[]]
 
     def _emit(self, code: str, to: int = 0, a: int = 0, b: int = 0, c: int = 0, value: float = 0.0) -> None:
         if code not in _codes:
@@ -70,6 +73,10 @@ class Writer:
             self._emit(f"load_{name}", to)
         elif kind == "event_count":
             self._emit("load_event_count", to, self.events.index(name))
+        elif kind == "side":
+            self._emit("load_state", to, self.events.index(name))
+        elif kind == "waiting":
+            self._emit("load_waiting", to, int(name))
         else:
             self._emit(f"load_{kind}", to, self.place[name][1])
 
@@ -128,7 +135,29 @@ class Writer:
                 self._emit(name, to, *arguments)
         for root, (code, number) in zip(roots, stores):
             self._emit(code, register[id(root)], number)
-        self.functions.append((begin, len(self.codes)))
+        self.functions[-1].append((begin, len(self.codes)))
+
+    def series(self, several: Iterable[Callable[[], None]]) -> None:
+        """Functions of which a model has several."""
+        self.functions.append([])
+        for write in several:
+            write()
+
+    def value(self, root: Node | None) -> None:
+        """A function with one result, or an empty one."""
+        self.function([] if root is None else [root], [] if root is None else [("store_result", 0)])
+
+    def triggered(self, edge: Edge, model: Model) -> None:
+        """What happens where the condition of a trigger comes to hold."""
+        one = edge.starts
+        if one is None:
+            self.function([constant(0.0)], [("store_drop", edge.drops)])
+        elif model.queue is None:
+            self.hook(one.do, f"trigger {one.name}")
+        else:
+            due = sym.time if one.delay is None else sym.time + one.delay
+            self.function([*one.values, due], [*(("store_waiting", v) for v in range(len(one.values))),
+                                               ("store_put", model.triggers.index(one))])
 
     def hook(self, assignments: Assignments, what: str) -> None:
         """A hook, from its assignments [(target, value)]."""
@@ -158,11 +187,12 @@ def library(model: AnyModel, components: Components, method: str) -> _core.Libra
         raise _refuse(f"the interpreter has the methods {', '.join(methods)} alone")
     if model.mass_matrix is not None:
         raise _refuse("it has a mass matrix")
-    if model.stops:
-        raise _refuse("it has stop times")
     if model.summaries:
         raise _refuse("it has extrema or integrals over a phase")
     size = _size_for(components)
+    if model.queue is not None and model.queue.values > _core.tape_values:
+        raise _refuse(f"its actions that wait have {model.queue.values} values, and the interpreter "
+                      f"{_core.tape_values} at the most")
     writer = Writer(components)
     results = [("store_result", c) for c in range(max(len(model.rhs), len(model.events)))]
     writer.function(model.rhs, results)
@@ -171,13 +201,58 @@ def library(model: AnyModel, components: Components, method: str) -> _core.Libra
     writer.hook(model.after_step, "after_step")
     writer.hook(model.finalise, "finalise")
     writer.hook(model.generate, "generate")
-    actions: list[Assignments] = [e.do for e in model.events]
-    for number, assignments in enumerate(actions):
-        writer.hook(assignments, f"event {number}")
+    _write_actions(writer, model)
+    actions = [one.do for one in (*model.events, *model.stops, *model.triggers)]
     may_stop = any(t.value[0] == "action" for a in (model.after_step, *actions) for t, _ in a)
-    made = _core.Tape(writer.functions, writer.codes, writer.values, writer.registers)
+    made = _tape(writer, model)
     shared, shared_integers = (len(components.names[kind]) for kind in kinds.shared)
     return _core.Library(method, size, shared, shared_integers, may_stop, made)
+
+
+def _write_actions(writer: Writer, model: Model) -> None:
+    """The functions of events, stops and triggers."""
+    stops, triggers, edges = model.stops, model.triggers, model.edges
+
+    def do(one: Event | Stop | Trigger) -> Callable[[], None]:
+        return lambda: writer.hook(one.do, repr(one.name))
+
+    def value(root: Node | None) -> Callable[[], None]:
+        return lambda: writer.value(root)
+
+    def edge(one: Edge) -> Callable[[], None]:
+        return lambda: writer.triggered(one, model)
+
+    writer.series(map(do, model.events))
+    writer.series([value(_time_of(one)) for one in stops])
+    writer.series(map(do, stops))
+    writer.series([value(one.condition) for one in edges])
+    writer.series(map(edge, edges))
+    writer.series(map(do, triggers))
+    writer.series([value(one.priority) for one in triggers])
+
+
+def _time_of(one: Stop) -> Node:
+    """The time of a stop by its number, which stands where the time does."""
+    number = sym.time
+    if one.every is not None:
+        first, every, count = one.values
+        return where(number < count, fma(number, every, first), math.inf)
+    time: Any = constant(math.inf)
+    for i, given in reversed(list(enumerate(one.times))):
+        time = where(number == i, given, time)
+    return time
+
+
+def _tape(writer: Writer, model: Model) -> _core.Tape:
+    """The tape of the functions of a model."""
+    place = writer.place
+    queue, edges = model.queue, model.edges
+    where_waiting = [0, 0, 0, 0] if queue is None else [
+        place[queue.accessories[0]][1], place[queue.integers[0]][1], queue.capacity, queue.values]
+    return _core.Tape(writer.functions, writer.codes, writer.values, writer.registers,
+                      [i for i, e in enumerate(edges) if not e.initial_value],
+                      [i for i, e in enumerate(edges) if not e.persistent], where_waiting,
+                      *((-1, -1) if queue is None else (len(model.stops), queue.seed)))
 
 
 def give_model(library: _core.Library, model: AnyModel, components: Components, method: str) -> None:
@@ -193,8 +268,10 @@ def give_model(library: _core.Library, model: AnyModel, components: Components, 
         return
     for _ in range(4):  # no hooks
         writer.function([], [])
+    for _ in range(7):
+        writer.series([])
     mass = [] if model.mass_matrix is None or model.initialise else model.mass_matrix.ravel().tolist()
-    library.give_model(_core.Tape(writer.functions, writer.codes, writer.values, writer.registers), method, mass)
+    library.give_model(_tape(writer, model), method, mass)
 
 
 _known: weakref.WeakKeyDictionary[Any, Any] = weakref.WeakKeyDictionary()

@@ -485,12 +485,20 @@ NB_MODULE(_core, m) {
         limits["event"] = most.n_event;
         sizes[size.c_str()] = limits;
     }
+#define MYRIAD_LIMIT_OF_STOPS(size, ...)                               \
+    sizes[#size]["stop"] = static_cast<int>(tape_sizes::size::n_stop); \
+    sizes[#size]["trigger"] = static_cast<int>(tape_sizes::size::n_trigger);
+    MYRIAD_TAPE_SIZES(MYRIAD_LIMIT_OF_STOPS)
     m.attr("tape_sizes") = sizes;
     m.attr("tape_registers") = tape_registers;
+    m.attr("tape_values") = tape_values;
     nb::class_<interpreted>(m, "Tape").def("__init__", [](interpreted* self, const tape_functions& functions,
                                                           const std::vector<int>& codes,
                                                           const std::vector<double>& values,
-                                                          const std::vector<std::array<int, 4>>& registers) {
+                                                          const std::vector<std::array<int, 4>>& registers,
+                                                          const std::vector<int>& false_at_first,
+                                                          const std::vector<int>& lapsing,
+                                                          const std::array<int, 4>& queue, int due, std::int64_t seed) {
         require(codes.size() == values.size() && codes.size() == registers.size(), "a tape's parts differ in length");
         std::vector<tape_step> steps;
         for (std::size_t i = 0; i < codes.size(); ++i) {
@@ -501,7 +509,9 @@ NB_MODULE(_core, m) {
             };
             steps.push_back({values[i], narrow(0), narrow(1), narrow(2), narrow(3), static_cast<tape_code>(codes[i])});
         }
-        new (self) interpreted(functions, std::move(steps));
+        require(queue[3] <= tape_values, "actions that wait have at most ", tape_values, " values");
+        new (self) interpreted(functions, std::move(steps),
+                               {false_at_first, lapsing, {queue[0], queue[1], queue[2], queue[3]}, due, seed});
     });
     nb::class_<library>(m, "Library")
         .def(nb::init<const std::string&>())

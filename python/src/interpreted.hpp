@@ -12,20 +12,30 @@
 
 namespace myriad::python {
 
-/// First and last step of each function: rhs, events, initialise, after_step, finalise, generate, after each event.
-using tape_functions = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+/// First and last step of each function: rhs, events, initialise, after_step, finalise, generate; and then those of
+/// which there are several.
+using tape_functions = std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>>;
+
+/// What a tape has besides its functions: numbers of triggers whose initial value is false, and of those that do not
+/// persist; the queue, the stop at which its actions run, and the seed of their order.
+struct tape_triggers {
+    std::vector<int> false_at_first, lapsing;
+    tape_queue queue;
+    int due = -1;
+    std::int64_t seed = -1;
+};
 
 /// A tape with its memory. Throws `error` if it is not a valid one.
 class interpreted {
 public:
-    interpreted(const tape_functions& functions, std::vector<tape_step> steps);
+    interpreted(const tape_functions& functions, std::vector<tape_step> steps, const tape_triggers& triggers);
     interpreted(const interpreted&) = delete;
     interpreted& operator=(const interpreted&) = delete;
     const tape& get() const { return tape_; }
 
 private:
     std::vector<tape_step> steps_;
-    std::vector<tape_function> after_event_;
+    std::vector<std::vector<tape_function>> series_;
     tape tape_;
 };
 

@@ -32,10 +32,10 @@ constexpr named_kernel kernels[] = {
 #undef MYRIAD_TAPE_KERNEL
 #undef MYRIAD_TAPE_KERNELS
 };
-constexpr int most_events = std::max({
-#define MYRIAD_TAPE_EVENTS(size, ...) tape_sizes::size::n_event,
-    MYRIAD_TAPE_SIZES(MYRIAD_TAPE_EVENTS)
-#undef MYRIAD_TAPE_EVENTS
+constexpr int most_of_a_kind = std::max({
+#define MYRIAD_TAPE_MOST(size, ...) tape_sizes::size::n_event, tape_sizes::size::n_trigger,
+    MYRIAD_TAPE_SIZES(MYRIAD_TAPE_MOST)
+#undef MYRIAD_TAPE_MOST
 });
 
 }  // namespace
@@ -58,20 +58,33 @@ const kernel_library& interpreter(const std::string& method, const std::string& 
     throw error(message("there is no interpreter of size ", size, " with the method ", method));
 }
 
-interpreted::interpreted(const tape_functions& functions, std::vector<tape_step> steps) : steps_(std::move(steps)) {
+interpreted::interpreted(const tape_functions& functions, std::vector<tape_step> steps, const tape_triggers& triggers)
+    : steps_(std::move(steps)) {
     const auto number_of_steps = static_cast<std::uint32_t>(steps_.size());
     for (const tape_step& step : steps_)
         require(std::max({step.to, step.b, step.c}) < tape_registers, "a tape names a register beyond ",
                 tape_registers);
-    const auto part = [&](const std::pair<std::uint32_t, std::uint32_t>& range) {
-        require(range.first <= range.second && range.second <= number_of_steps, "a tape's function is out of range");
-        return tape_function{steps_.data() + range.first, steps_.data() + range.second};
-    };
-    require(functions.size() >= 6, "a tape has 6 functions, and one for each event");
-    after_event_.resize(std::max(functions.size() - 6, std::size_t{most_events}));
-    for (std::size_t j = 6; j < functions.size(); ++j) after_event_[j - 6] = part(functions[j]);
-    tape_ = {part(functions[0]), part(functions[1]), part(functions[2]), part(functions[3]),
-             part(functions[4]), part(functions[5]), after_event_.data()};
+    for (const auto& several : functions) {
+        std::vector<tape_function>& made = series_.emplace_back();
+        for (const auto& [begin, end] : several) {
+            require(begin <= end && end <= number_of_steps, "a tape's function is out of range");
+            made.push_back({steps_.data() + begin, steps_.data() + end});
+        }
+        made.resize(std::max(made.size(), std::size_t{most_of_a_kind}));
+    }
+    std::size_t next = 1;
+#define MYRIAD_TAPE_MEMBER(name) \
+    require(next < series_.size(), "a tape has no " #name), tape_.name = series_[next++].data();
+    MYRIAD_TAPE_SERIES(MYRIAD_TAPE_MEMBER)
+#undef MYRIAD_TAPE_MEMBER
+    const std::vector<tape_function>& first = series_.front();
+    tape_.rhs = first[0], tape_.events = first[1], tape_.initialise = first[2], tape_.after_step = first[3],
+    tape_.finalise = first[4], tape_.generate = first[5];
+    for (const int trigger : triggers.false_at_first) tape_.false_at_first |= std::uint64_t{1} << trigger;
+    for (const int trigger : triggers.lapsing) tape_.lapsing |= std::uint64_t{1} << trigger;
+    tape_.queue = triggers.queue;
+    tape_.due = triggers.due;
+    tape_.seed = triggers.seed;
 }
 
 void start_tape_team(openmp::team* all) {

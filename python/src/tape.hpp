@@ -34,9 +34,11 @@
     X(shared)               \
     X(shared_integer)       \
     X(accessory)            \
-    X(integer_accessory) X(event_count) X(time) X(step) X(next_step) X(phase) X(instance) X(t_begin) X(t_end)
+    X(integer_accessory) X(event_count) X(time) X(step) X(next_step) X(phase) X(instance) X(t_begin) X(t_end) X(waiting)
 #define MYRIAD_TAPE_STORE(X) \
-    X(result) X(state) X(parameter) X(accessory) X(integer_accessory) X(next_step) X(end_phase) X(end_instance)
+    X(result)                \
+    X(state)                 \
+    X(parameter) X(accessory) X(integer_accessory) X(next_step) X(end_phase) X(end_instance) X(waiting) X(put) X(drop)
 // The methods that the interpreter is compiled for.
 #define MYRIAD_TAPE_METHODS(X, ...)           \
     X(tsitouras_5 __VA_OPT__(, ) __VA_ARGS__) \
@@ -111,26 +113,49 @@ struct tape_function {
 inline constexpr int tape_registers = 512;
 inline constexpr int tape_batches = 2;  ///< SIMD registers per pack
 
-/// The most that an interpreter has of each kind of component.
-template <int states, int parameters, int accessories, int integers, int events, bool lane_by_lane>
+/// The most that an interpreter has of each kind of component, of stops and of triggers.
+template <int states, int parameters, int accessories, int integers, int events, int stops, int triggers,
+          bool lane_by_lane>
 struct tape_size {
     static constexpr bool scalar_only = lane_by_lane;
+    static constexpr int n_stop = stops, n_trigger = triggers;
     static constexpr int n_state = states, n_parameter = parameters, n_accessory = accessories,
                          n_integer_accessory = integers, n_event = events;
 };
 // The interpreters, from the smallest: a model has the first that it fits in, as what it does not use costs time and
-// memory; models with more need a compiler. The large one has no packs, which more than double the time to compile it.
-#define MYRIAD_TAPE_SIZES(X) X(small, 8, 16, 6, 3, 3, false) X(large, 128, 128, 128, 8, 64, true)
+// memory; models with more need a compiler. The large ones have no packs, which more than double the time to compile.
+#define MYRIAD_TAPE_SIZES(X)                   \
+    X(small, 8, 16, 6, 3, 3, 0, 0, false)      \
+    X(large, 128, 128, 128, 8, 64, 0, 0, true) \
+    X(with_triggers, 128, 128, 512, 256, 64, 3, 64, true)
 namespace tape_sizes {
 #define MYRIAD_TAPE_SIZE(name, ...) using name = tape_size<__VA_ARGS__>;
 MYRIAD_TAPE_SIZES(MYRIAD_TAPE_SIZE)
 #undef MYRIAD_TAPE_SIZE
 }  // namespace tape_sizes
 
+inline constexpr int tape_values = 32;  ///< that an action which waits can have
+
+/// Where a model's actions wait, as in `action_queue`.
+struct tape_queue {
+    int first = 0, first_integer = 0, capacity = 0, values = 0;
+};
+
+// The functions of which a model has several: for each event, stop or trigger; for each trigger also the action that
+// has waited, and its priority. Conditions read sides as states, and times of stops the number as the time.
+#define MYRIAD_TAPE_SERIES(X) \
+    X(after_event) X(stop_time) X(after_stop) X(condition) X(after_trigger) X(late_action) X(priority)
+
 /// A model.
 struct tape {
     tape_function rhs, events, initialise, after_step, finalise, generate;
-    const tape_function* after_event = nullptr;  ///< for each event that any interpreter has
+#define MYRIAD_TAPE_MEMBER(name) const tape_function* name = nullptr;  // for as many as any interpreter has
+    MYRIAD_TAPE_SERIES(MYRIAD_TAPE_MEMBER)
+#undef MYRIAD_TAPE_MEMBER
+    std::uint64_t false_at_first = 0, lapsing = 0;  ///< triggers whose initial value is false; that do not persist
+    tape_queue queue;
+    int due = -1;            ///< the stop at which actions run that have waited
+    std::int64_t seed = -1;  ///< of their order where priorities tie; -1: that in which they were put
 };
 
 /// The tape that the calling thread runs.

@@ -2,6 +2,10 @@
 // The model that runs a tape; components beyond the tape's are not used, and stay zero.
 #pragma once
 
+#include <limits>
+#include <type_traits>
+
+#include "myriad/kernel/model/action_queue.hpp"
 #include "myriad/python/kernel_library.hpp"
 #include "tape.hpp"
 
@@ -46,6 +50,12 @@ template <class R>
 struct tape_wishes {
     mask_of<R> end_phase{}, end_instance{};
 };
+/// An action that waits: what the function of a trigger puts or drops, and what is taken from the queue.
+struct tape_action {
+    int put = -1, drop = -1;  ///< the number of the action
+    double time = 0.0, priority = -std::numeric_limits<double>::infinity();
+    vec<double, tape_values> value;
+};
 
 /// The arguments of rhs and events.
 template <class R, class States, class Inputs>
@@ -56,12 +66,13 @@ struct function_source {
     const Inputs& p;
     R* results;
 };
-/// The arguments of a hook.
+/// The arguments of a hook; `waiting` where there is an action that waits.
 template <class R, class Lane>
 struct hook_source {
     static constexpr bool in_hook = true;
     Lane& p;
     tape_wishes<R>& wishes;
+    tape_action* waiting = nullptr;
 };
 
 /// The argument of `generate`: an instance of a study.
@@ -70,6 +81,8 @@ struct generate_source {
     static constexpr bool in_hook = false;
     Instance& p;
 };
+
+inline void run_on_waiting_action(const tape_step& step, tape_action& waiting, double& x);
 
 /// Runs a function. One copy for each kind of arguments, since kernels call it at every stage.
 template <class R, class Source>
@@ -213,6 +226,29 @@ inline void run_in_hook(const tape_step& step, const Source& s, R* r) {
             s.wishes.end_instance = x != R(0);
             break;
         default:
+            if constexpr (std::is_same_v<R, double>) run_on_waiting_action(step, *s.waiting, x);
+    }
+}
+/// The operations of actions that wait.
+inline void run_on_waiting_action(const tape_step& step, tape_action& waiting, double& x) {
+    switch (step.code) {
+        case tape_code::load_waiting:
+            x = waiting.value[step.a];
+            break;
+        case tape_code::store_waiting:
+            waiting.value[step.a] = x;
+            break;
+        case tape_code::store_put:
+            waiting.put = step.a;
+            waiting.time = x;
+            break;
+        case tape_code::store_drop:
+            waiting.drop = step.a;
+            break;
+        case tape_code::store_result:
+            waiting.priority = x;
+            break;
+        default:
             break;
     }
 }
@@ -304,7 +340,7 @@ struct tape_model {
         run_tape<typename std::remove_cvref_t<decltype(instance)>::real>(current_tape->generate, source{instance});
     }
 
-private:
+protected:
     template <class R>
     MYRIAD_FUNCTION static void run(const tape_function& f, const auto& t, const myriad::vec<R, n_state>& y,
                                     const auto& p, R* results) {
@@ -314,14 +350,85 @@ private:
                     function_source<R, myriad::vec<R, n_state>, std::remove_cvref_t<decltype(p)>>{time, y, p, results});
     }
     /// A hook of one instance.
-    MYRIAD_FUNCTION static myriad::action hook(const tape_function& f, auto& lane) {
+    MYRIAD_FUNCTION static myriad::action hook(const tape_function& f, auto& lane, tape_action* waiting = nullptr) {
         using R = std::remove_cvref_t<decltype(lane.h_next)>;
         tape_wishes<R> wishes;
         if (f.empty()) return myriad::action::proceed;
-        run_tape<R>(f, hook_source<R, std::remove_reference_t<decltype(lane)>>{lane, wishes});
+        run_tape<R>(f, hook_source<R, std::remove_reference_t<decltype(lane)>>{lane, wishes, waiting});
         if (wishes.end_instance) return myriad::action::end_instance;
         return wishes.end_phase ? myriad::action::end_phase : myriad::action::proceed;
     }
 };
+
+/// The places of the queue of the tape.
+struct tape_layout : tape_queue {
+    static constexpr int most_values = tape_values;
+    tape_layout() : tape_queue(current_tape->queue) {}
+};
+/// The sides of event functions, as the states that a condition reads.
+template <class Sides>
+struct states_of_sides {
+    const Sides& positive;
+    double operator[](int j) const { return positive[j] ? 1.0 : 0.0; }
+};
+/// The inputs of a function that reads none.
+struct no_inputs {
+    const double *parameter = nullptr, *accessory = nullptr, *shared = nullptr;
+    const std::int32_t *integer_accessory = nullptr, *shared_integer = nullptr;
+};
+
+/// The same with stops and triggers.
+template <class size>
+struct triggered_tape_model : tape_model<size> {
+    using queue = basic_action_queue<tape_layout>;
+    enum stop { n_stop = size::n_stop };
+    enum trigger { n_trigger = size::n_trigger };
+
+    template <class R>
+    MYRIAD_FUNCTION static R stop_time(int stop, int number, const auto& p) {
+        if (stop == current_tape->due) return queue::next_time(p);
+        R time = infinity_of<R>;
+        read(current_tape->stop_time[stop], R(number), &time, p, time);
+        return time;
+    }
+    MYRIAD_FUNCTION static myriad::action after_stop(int stop, int, auto& lane) {
+        if (stop != current_tape->due) return tape_model<size>::hook(current_tape->after_stop[stop], lane);
+        tape_action waiting;
+        const auto priority = [&](int action) {
+            tape_action one;
+            tape_model<size>::hook(current_tape->priority[action], lane, &one);
+            return one.priority;
+        };
+        const auto taken = queue::take(lane, priority, current_tape->seed);
+        waiting.value = taken.value;
+        return tape_model<size>::hook(current_tape->late_action[taken.action], lane, &waiting);
+    }
+    MYRIAD_FUNCTION static bool condition(int trigger, const auto& positive) {
+        double holds = 0.0;
+        read(current_tape->condition[trigger], 0.0, states_of_sides<std::remove_cvref_t<decltype(positive)>>{positive},
+             no_inputs{}, holds);
+        return holds != 0.0;
+    }
+    MYRIAD_FUNCTION static bool initial_value(int trigger) { return !has(current_tape->false_at_first, trigger); }
+    MYRIAD_FUNCTION static bool persistent(int trigger) { return !has(current_tape->lapsing, trigger); }
+    MYRIAD_FUNCTION static myriad::action after_trigger(int trigger, auto& lane) {
+        tape_action waiting;
+        const myriad::action wanted = tape_model<size>::hook(current_tape->after_trigger[trigger], lane, &waiting);
+        if (waiting.drop >= 0) queue::cancel(lane, waiting.drop);
+        const bool fits = waiting.put < 0 || queue::put(lane, waiting.put, waiting.time, waiting.value);
+        return fits ? wanted : myriad::action::overflow;
+    }
+
+private:
+    static bool has(std::uint64_t triggers, int trigger) { return (triggers >> trigger & 1u) != 0; }
+    /// The one result of a function.
+    template <class R, class States, class Inputs>
+    static void read(const tape_function& f, const R& t, const States& y, const Inputs& p, R& result) {
+        if (!f.empty()) run_tape<R>(f, function_source<R, States, Inputs>{t, y, p, &result});
+    }
+};
+
+template <class size>
+using model_of_tape = std::conditional_t<(size::n_trigger > 0), triggered_tape_model<size>, tape_model<size>>;
 
 }  // namespace myriad::python

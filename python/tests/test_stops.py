@@ -80,11 +80,6 @@ def test_stops_are_written_as_cpp():
     assert "stop" not in my.model(equations).cpp()
 
 
-def test_a_model_with_stops_is_not_interpreted():
-    with pytest.raises(my.Error, match="cannot be interpreted, as it has stop times"):
-        my.solve(treatment(my.stop(1)), {"gut": 0, "blood": 0, "ka": 1, "ke": 1}, time=(0, 1), interpreted=True)
-
-
 @pytest.mark.parametrize("make, message", [
     (lambda: my.stop([1, 2], every=3), "give one time or a list of times, or the first one with every="),
     (lambda: my.stop(1, count=3), "give one time or a list of times"),

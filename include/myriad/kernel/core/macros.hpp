@@ -40,6 +40,9 @@
 #define MYRIAD_UNROLL_BY_FOUR _Pragma("unroll 4")
 /// Keeps device code from unrolling the following loop.
 #define MYRIAD_ROLLED _Pragma("unroll 1")
+/// The same as MYRIAD_UNROLL in device code, which can only then keep what it indexes in registers; on the CPU the
+/// following loop stays one, for code that is rarely reached and would take long to compile.
+#define MYRIAD_UNROLL_ON_GPU MYRIAD_UNROLL
 /// a * b rounded, where nvcc would fuse it with an addition: for results that are to be the host's.
 #define MYRIAD_ROUNDED_PRODUCT(a, b) __dmul_rn(a, b)
 #else
@@ -48,6 +51,7 @@
 #define MYRIAD_UNROLL_UP_TO(count)
 #define MYRIAD_UNROLL_BY_FOUR
 #define MYRIAD_ROLLED
+#define MYRIAD_UNROLL_ON_GPU
 #define MYRIAD_ROUNDED_PRODUCT(a, b) ((a) * (b))
 #endif
 #define MYRIAD_WHOLE_LOOP static_cast<void>(0)
@@ -80,8 +84,10 @@
 #define MYRIAD_ROUNDED_PRODUCT(a, b) ((a) * (b))
 #if defined(__clang__)
 #define MYRIAD_UNROLL _Pragma("clang loop unroll(full)")
+#define MYRIAD_UNROLL_ON_GPU _Pragma("clang loop unroll(disable)")
 #else
 #define MYRIAD_UNROLL _Pragma("GCC unroll 128")
+#define MYRIAD_UNROLL_ON_GPU _Pragma("GCC unroll 1")
 #endif
 #define MYRIAD_UNROLL_UP_TO(count) MYRIAD_UNROLL
 #define MYRIAD_BACKEND_HEADER "myriad/openmp/run.hpp"

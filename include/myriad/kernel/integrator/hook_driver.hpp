@@ -204,7 +204,7 @@ private:
     }
 
     MYRIAD_FUNCTION void act_on_lane(int i) {
-        static_for<0, m>([&](auto j) MYRIAD_LAMBDA {
+        const auto act = [&](auto j) MYRIAD_LAMBDA {
             if (!events.has_fired(j, i)) return;
             const auto detections = static_cast<std::int32_t>(get_lane(s.data.event_count[j], i)) + 1;
             set_lane(s.data.event_count[j], i, detections);
@@ -214,7 +214,12 @@ private:
             if (args.event[j].stop_after > 0 && detections >= args.event[j].stop_after)
                 s.end_lane(i, status::stopped_by_event);
             if (events.count_action(j, i) >= args.accumulation_limit) s.end_lane(i, status::event_accumulation);
-        });
+        };
+        if constexpr (m <= 32) {
+            static_for<0, m>(act);
+        } else {  // copies of so many actions would take minutes to compile
+            for (int j = 0; j < m; ++j) act(j);
+        }
     }
 
     /// Calls a scalar hook and carries out the action that it returns.
