@@ -385,13 +385,13 @@ struct triggered_tape_model : tape_model<size> {
     enum trigger { n_trigger = size::n_trigger };
 
     template <class R>
-    MYRIAD_FUNCTION static R stop_time(int stop, int number, const auto& p) {
+    [[gnu::noinline]] static R stop_time(int stop, int number, const auto& p) {
         if (stop == current_tape->due) return queue::next_time(p);
         R time = infinity_of<R>;
         read(current_tape->stop_time[stop], R(number), &time, p, time);
         return time;
     }
-    MYRIAD_FUNCTION static myriad::action after_stop(int stop, int, auto& lane) {
+    [[gnu::noinline]] static myriad::action after_stop(int stop, int, auto& lane) {
         if (stop != current_tape->due) return tape_model<size>::hook(current_tape->after_stop[stop], lane);
         tape_action waiting;
         const auto priority = [&](int action) {
@@ -403,7 +403,7 @@ struct triggered_tape_model : tape_model<size> {
         waiting.value = taken.value;
         return tape_model<size>::hook(current_tape->late_action[taken.action], lane, &waiting);
     }
-    MYRIAD_FUNCTION static bool condition(int trigger, const auto& positive) {
+    [[gnu::noinline]] static bool condition(int trigger, const auto& positive) {
         double holds = 0.0;
         read(current_tape->condition[trigger], 0.0, states_of_sides<std::remove_cvref_t<decltype(positive)>>{positive},
              no_inputs{}, holds);
@@ -411,7 +411,7 @@ struct triggered_tape_model : tape_model<size> {
     }
     MYRIAD_FUNCTION static bool initial_value(int trigger) { return !has(current_tape->false_at_first, trigger); }
     MYRIAD_FUNCTION static bool persistent(int trigger) { return !has(current_tape->lapsing, trigger); }
-    MYRIAD_FUNCTION static myriad::action after_trigger(int trigger, auto& lane) {
+    [[gnu::noinline]] static myriad::action after_trigger(int trigger, auto& lane) {
         tape_action waiting;
         const myriad::action wanted = tape_model<size>::hook(current_tape->after_trigger[trigger], lane, &waiting);
         if (waiting.drop >= 0) queue::cancel(lane, waiting.drop);

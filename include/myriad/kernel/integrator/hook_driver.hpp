@@ -158,8 +158,8 @@ private:
     }
 
     /// Calls after_trigger for the pending triggers of lane i, in order of their index, and for those that their
-    /// actions bring about. Returns whether there were any.
-    MYRIAD_FUNCTION bool act_on_triggers_of(int i) {
+    /// actions bring about. Returns whether there were any. Called at several places.
+    MYRIAD_LARGE_FUNCTION bool act_on_triggers_of(int i) {
         constexpr int triggers = n_trigger<Model>;
         auto& pending = events.pending_triggers(i);
         bool acted = false;
