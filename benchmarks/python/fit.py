@@ -25,9 +25,10 @@ start = {a: 1, b: 0, c: 0}
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--starts", type=int, default=1000)
+    parser.add_argument("--device", default="cpu", help="default: cpu")
     parser.add_argument("--profile", action="store_true", help="where the time goes, too")
     arguments = parser.parse_args()
-    options = {"method": "rodas_5p", "rtol": 1e-6, "atol": {a: 1e-8, b: 1e-12, c: 1e-8}}
+    options = {"method": "rodas_5p", "rtol": 1e-6, "atol": {a: 1e-8, b: 1e-12, c: 1e-8}, "device": arguments.device}
     times = np.geomspace(0.1, 400, 100)
     run = my.solve(model, true, start=start, time=(0, 400), samples=times, **options)
     random = np.random.default_rng(1)

@@ -31,21 +31,30 @@ class Descent:
         if pinned is not None:
             place = np.arange(len(varied)), pinned
             self.least[place] = self.most[place] = self.varied[place]
-        self.residuals, self.jacobian = self._evaluate(self.varied)
-        self.loss = _loss(self.residuals)
+        self.loss, self.normal, self.gradient = self._evaluate(self.varied)
         count = len(varied)
         self.state = np.where(np.isfinite(self.loss), _running, _failed)
         self.damping, self.growth = np.full(count, 1e-3), np.full(count, 2.0)
         self.scale = np.zeros(varied.shape)
         self.iterations = np.zeros(count, int)
 
-    def _evaluate(self, varied: Array) -> tuple[Array, Array]:
-        """Residuals, and their derivatives by what varies."""
+    def derivatives(self, varied: Array) -> tuple[Array, Array]:
+        """Residuals, and their derivatives by what varies, at points in rows."""
         values = from_logarithms(self.problem.free, varied)
         residuals, jacobian = self.problem.evaluate(values)
         inner = np.stack([values[:, i] if f.log else np.ones(len(values))
                           for i, f in enumerate(self.problem.free)], axis=1)
-        return residuals, jacobian * inner[:, None, :]
+        jacobian *= inner[:, None, :]
+        return residuals, jacobian
+
+    def _evaluate(self, varied: Array) -> tuple[Array, Array, Array]:
+        """The loss, infinite where there is none, J^T J and the gradient J^T r at points in rows."""
+        residuals, jacobian = self.derivatives(varied)
+        transposed = jacobian.transpose(0, 2, 1)
+        with np.errstate(over="ignore", invalid="ignore"):
+            loss = 0.5 * np.sum(residuals * residuals, axis=1)
+            return np.where(np.isfinite(loss), loss, np.inf), transposed @ jacobian, \
+                (transposed @ residuals[..., None])[..., 0]
 
     def run(self, iterations: int) -> Descent:
         """Iterates until no start goes on, or so many times."""
@@ -60,10 +69,8 @@ class Descent:
         on = np.flatnonzero(self.state == _running)
         if not on.size:
             return False
-        u, r, jac, loss = self.varied[on], self.residuals[on], self.jacobian[on], self.loss[on]
+        u, loss, normal, gradient = self.varied[on], self.loss[on], self.normal[on], self.gradient[on]
         least, most = self.least[on], self.most[on]
-        normal = np.einsum("srp,srq->spq", jac, jac)
-        gradient = np.einsum("srp,sr->sp", jac, r)
         diagonal = np.einsum("spp->sp", normal)
         self.scale[on] = np.maximum(self.scale[on], diagonal)
         scale = np.where(self.scale[on] > 0, self.scale[on], 1.0)
@@ -89,15 +96,14 @@ class Descent:
 
     def _take(self, on: Array, to: Array, predicted: Array) -> None:
         """Tries the steps, and takes those that lessen the loss."""
-        residuals, jacobian = self._evaluate(to)
-        new, old = _loss(residuals), self.loss[on]
+        (new, normal, gradient), old = self._evaluate(to), self.loss[on]
         self.iterations[on] += 1
         with np.errstate(divide="ignore", invalid="ignore"):
             ratio = (old - new) / predicted
-        better = (new < old) & np.isfinite(jacobian).all(axis=(1, 2))
+        better = (new < old) & np.isfinite(normal).all(axis=(1, 2))
         taken = on[better]
         self.varied[taken], self.loss[taken] = to[better], new[better]
-        self.residuals[taken], self.jacobian[taken] = residuals[better], jacobian[better]
+        self.normal[taken], self.gradient[taken] = normal[better], gradient[better]
         factor = np.maximum(1 / 3, 1 - (2 * np.clip(ratio[better], 0, 1) - 1) ** 3)
         self.damping[taken] = np.maximum(self.damping[taken] * factor, 1e-15)
         self.growth[taken] = 2
@@ -107,9 +113,3 @@ class Descent:
         done = better & (old - new <= self.tolerance * old) & (predicted <= self.tolerance * old)
         self.state[on[done]] = _converged
         self.state[on[self.damping[on] > _largest_damping]] = _converged  # no shorter step lessens the loss
-
-
-def _loss(residuals: Array) -> Array:
-    with np.errstate(over="ignore", invalid="ignore"):
-        loss = 0.5 * np.sum(residuals * residuals, axis=1)
-    return np.where(np.isfinite(loss), loss, np.inf)

@@ -47,14 +47,16 @@ class Fit:
             raise Error("no start of the fit has a solution up to the last time of the data: look at one by "
                         "my.least_squares(...).run(values).report, and give narrower bounds")
         self.best = {name: float(of[self.index]) for name, of in self.values.items()}  #: the best values, by name
-        self.residuals: Array = descent.residuals[self.index]  #: in the order of `problem.labels`
+        residuals, jacobian = descent.derivatives(descent.varied[[self.index]])
+        self.residuals: Array = residuals[0]  #: in the order of `problem.labels`
+        self._jacobian: Array = jacobian[0]
         self._limits = iterations, descent.tolerance
         self._assess(descent)
 
     def _assess(self, descent: Descent) -> None:
         """Fisher information, standard errors, and what the fit cannot tell."""
         problem, free = self.problem, self.problem.free
-        self._jacobian = jacobian = descent.jacobian[self.index]
+        jacobian = self._jacobian
         self._varied = varied = descent.varied[self.index]
         self.notes: list[str] = []  #: what to know of the result
         length = np.linalg.norm(jacobian, axis=0)

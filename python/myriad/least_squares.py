@@ -196,7 +196,7 @@ class LeastSquares:
         residuals = np.concatenate([run[n][:, w] for n, w in self._where.items()], axis=1)
         jacobian = np.concatenate([run.sensitivity[n][:, w] for n, w in self._where.items()], axis=1)
         residuals = (residuals - self._observed) / self._sigma
-        jacobian = jacobian / self._sigma[:, None]
+        jacobian /= self._sigma[:, None]
         lost = ended & ~np.isfinite(residuals).all(axis=1)
         residuals[lost] = jacobian[lost] = np.nan
         return residuals, jacobian

@@ -65,9 +65,6 @@ class WithSensitivities(Extended):
             if getattr(model, what, False):
                 raise Error(f"the hooks of the model assign {what[7:].replace('_', ' ')}{line}, and what they assign "
                             "has no sensitivities: use an accessory, or end phases by an event")
-        if getattr(model, "mass_matrix", None) is not None:
-            raise Error(f"the model has a mass matrix{line}, which sensitivities do not take: solve its algebraic "
-                        "equations in the other states")
         self.by = names
         self.control = control  #: whether errors of derivatives take part in choosing the steps
         self.n_original = len(own.states)
