@@ -368,6 +368,20 @@ def expand_lists(texts):
         texts[file] = text
 
 
+def write_out_nested_macros(texts):
+    """Replaces the use of one macro in the definition of another of the same file by what it stands for."""
+    define = re.compile(r"^(\s*#\s*define (\w+)\(([^)]*)\))(.*)", flags=re.M)
+    for file, text in texts.items():
+        for _, name, parameters, body in define.findall(text):
+            def stands_for(call, parameters=parameters, body=body):
+                values = dict(zip((p.strip() for p in parameters.split(",")), (a.strip() for a in call[1].split(","))))
+                return re.sub(r"\w+", lambda word: values.get(word[0], word[0]), body)
+
+            use = re.compile(rf"\b{name}\(([^()]*)\)")
+            text = define.sub(lambda other: other[1] + use.sub(stands_for, other[4]), text)
+        texts[file] = text
+
+
 def names_looked_for(source, owner):
     """What the sources look for by name in a template parameter `owner`, as `owner::name`, with its first place.
 
@@ -379,6 +393,7 @@ def names_looked_for(source, owner):
                 text = re.sub(r"//.*|/\*.*?\*/", "", file.read_text(encoding="utf-8"))
                 texts[str(file.relative_to(source))] = text.replace("\\\n", " ")
     expand_lists(texts)
+    write_out_nested_macros(texts)
     found = {}
     if owner == "environment":
         for file, text in texts.items():

@@ -40,7 +40,7 @@ MEMBER_CHANGES = (
      "new_declaration"),
     (CONCEPTS, r"MYRIAD_HOOK_NAME\(finalise\)\n", r"\g<0>MYRIAD_HOOK_NAME(new_hook)\n", "new_hook"),
     (KINDS, r'row\(event, events, "event", void\)', r'\g<0> row(new_kind, new_kinds, "new kind", void)',
-     ("new_kind", "n_new_kind", "unit_new_kind")),
+     ("new_kind", "n_new_kind", "unit_new_kind", "n_unit_new_kind")),
     ("backends/openmp/myriad/openmp/packs.hpp", r"requires \{ Model::pack_batches; \}",
      r"requires { Model::pack_batches; Model::new_member; }", "new_member"),
     ("docs/model_members.md", r"### `max_block_size`\n", r"\g<0>\n### `nobody_asks`\n", "nobody_asks"),
