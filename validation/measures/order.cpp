@@ -71,8 +71,14 @@ void measure_order(session& s, const problem& p, const method_entry& m, const re
         levels.push_back(now);
     }
     if (levels.size() < least_levels) {
-        s.rows.add(s.about(p, m, h), "order", unknown, bounds::within(m.order, m.order),
-                   "too few steps above rounding");
+        // Errors of order nine reach rounding within one halving where the longest step is short for them; timed_circle
+        // and the order of the error estimate show it.
+        if (m.order >= 9) {
+            s.rows.add(s.about(p, m, h), "order, too few steps above rounding", unknown);
+        } else {
+            s.rows.add(s.about(p, m, h), "order", unknown, bounds::within(m.order, m.order),
+                       "too few steps above rounding");
+        }
         return;
     }
     const level &fine = levels.back(), &coarse = levels[levels.size() - 2];
