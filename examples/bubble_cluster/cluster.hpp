@@ -13,8 +13,7 @@
 struct cluster_bubble {
     enum unit_state { y, v, n_unit_state };
     enum parameter { pressure, n_parameter };  // amplitude of the sound, Pa
-    enum unit_shared { C0, C1, C2, C3, C4, C5, C7, C9, n_unit_shared };
-    enum shared { exponent, n_shared };
+    enum unit_shared { C0, C1, C2, C3, C4, C5, C7, C9, exponent, n_unit_shared };
     enum publication { sound, own_slope, inverse, n_publication };
     static constexpr myriad::coupling couplings[] = {myriad::full_coupling(sound)};
 
@@ -23,7 +22,7 @@ struct cluster_bubble {
         using myriad::powr, myriad::reciprocal, myriad::sincospi;
         const auto& c = p.unit_shared;
         const auto wave = sincospi(R(R(2) * t));
-        const R rest = reciprocal(u[y]), power = powr(u[y], R(-p.shared[exponent])), mach = c[C9] * u[v];
+        const R rest = reciprocal(u[y]), power = powr(u[y], R(-c[exponent])), mach = c[C9] * u[v];
         const R numerator = (c[C0] + c[C1] * u[v]) * power - c[C2] * (R(1) + mach) - c[C3] * rest -
                             c[C4] * u[v] * rest - (R(1.5) - R(0.5) * mach) * u[v] * u[v] -
                             p[pressure] * (c[C5] * wave.sine * (R(1) + mach) + c[C7] * wave.cosine * u[y]);

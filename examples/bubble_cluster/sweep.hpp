@@ -49,7 +49,7 @@ inline bubbles draw_bubbles() {
 // end of snippet
 
 /// C0 to C9 of one bubble, those of the sound per pascal of its amplitude: the constants of examples/keller_miksis for
-/// bubbles of other sizes.
+/// bubbles of other sizes; and the exponent of its gas.
 inline std::array<double, cluster_bubble::n_unit_shared> constants_of(double radius) {
     using namespace bubble;
     const double gas = ambient_pressure - vapour_pressure + 2 * surface_tension / radius;
@@ -61,14 +61,14 @@ inline std::array<double, cluster_bubble::n_unit_shared> constants_of(double rad
             4 * viscosity / (density * radius * radius * frequency),
             q * q / density,
             2 * std::numbers::pi * radius * frequency * q * q / (density * sound_speed),
-            radius * frequency / sound_speed};
+            radius * frequency / sound_speed,
+            3 * polytropic_exponent};
 }
 
 /// One instance for each pressure; all bubbles start at rest, and a phase is a period of the sound.
 inline myriad::ensemble<bubble_cluster> prepare(const bubbles& b, const Eigen::ArrayXd& pressures) {
     myriad::ensemble<bubble_cluster> sweep(pressures.size());
     sweep.parameter(cluster_bubble::pressure) = pressures;
-    sweep.shared(cluster_bubble::exponent) = 3 * bubble::polytropic_exponent;
     for (int i = 0; i < bubble_cluster::n_unit; ++i) {
         const auto c = constants_of(b.radius[i]);
         for (int k = 0; k < cluster_bubble::n_unit_shared; ++k)

@@ -69,6 +69,21 @@ private:
     stop_request last_ = stop_request::none;
 };
 
+/// Which instance a thread, or its team, takes first. The threads of a block take neighbours, whose values lie side by
+/// side. Of teams, only those of a warp do, and a block's warps take instances that lie far apart: expensive ones are
+/// often neighbours, and all multiprocessors should have a share of them.
+template <int threads>
+__device__ __forceinline__ std::int64_t first_instance() {
+    std::int64_t block = blockIdx.x;
+    MYRIAD_OPTIMISATION_BARRIER(block);  // else the address stays in registers through the loop
+    if constexpr (threads == 1) {
+        return block * blockDim.x + threadIdx.x;
+    } else {
+        constexpr int teams = 32 / threads;
+        return (static_cast<std::int64_t>(threadIdx.x / 32) * gridDim.x + block) * teams + threadIdx.x % 32 / threads;
+    }
+}
+
 /// A source of one instance, that of the number of the thread, or of the team.
 template <int threads>
 class own_instance : public request_of_host<false, threads> {
@@ -76,7 +91,7 @@ public:
     __device__ __forceinline__ own_instance(const std::int64_t size, const std::uint32_t*, unsigned long long*,
                                             const std::uint32_t* stop)
         : request_of_host<false, threads>(stop),
-          index_((static_cast<std::int64_t>(blockIdx.x) * blockDim.x + threadIdx.x) / threads) {
+          index_(first_instance<threads>()) {
         if (index_ >= size) index_ = -1;
     }
 
@@ -103,9 +118,7 @@ public:
 
     __device__ __forceinline__ std::int64_t next() {
         if (!this->gives_more()) return -1;
-        std::int64_t block = blockIdx.x;
-        MYRIAD_OPTIMISATION_BARRIER(block);  // else the address stays in registers through the loop
-        std::int64_t place = (block * blockDim.x + threadIdx.x) / threads;
+        std::int64_t place = first_instance<threads>();
         if (has_begun_) {
             if (queue_ == nullptr) return -1;
             const unsigned long long taken = thread_team<threads>::leads() ? atomicAdd(queue_, 1ull) : 0;

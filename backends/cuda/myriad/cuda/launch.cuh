@@ -132,6 +132,7 @@ private:
         // sooner others start. Where shared memory has no room for a warp, blocks are parts of one.
         int first = wanted > 0 ? wanted : std::min(32, most / 32 * 32);
         consider_blocks(first, wanted > 0 ? wanted : most);
+        if (traits().team > 1 && wanted == 0) consider_blocks(most / 32 * 32, most);
         while (facts_.block_size == 0 && wanted == 0 && keeps_steps_in_shared_memory() && first > smallest_block()) {
             first /= 2;
             consider_blocks(first, first);
@@ -145,9 +146,9 @@ private:
         chosen_by_user_ = wanted > 0;
     }
 
-    /// Takes the smallest of these block sizes, each twice the one before, that keeps the most threads resident.
+    /// Takes the smallest of these block sizes, each twice the one before, that keeps more threads resident.
     void consider_blocks(int first, int last) {
-        int best_threads = 0;
+        int best_threads = facts_.blocks_per_multiprocessor * chosen_block_;
         for (int block = first; block <= last; block *= 2) {
             int blocks = 0;
             MYRIAD_CUDA(cudaOccupancyMaxActiveBlocksPerMultiprocessor(
@@ -157,6 +158,11 @@ private:
             chosen_block_ = facts_.block_size = block;
             facts_.blocks_per_multiprocessor = blocks;
         }
+    }
+    /// A multiprocessor's share of the threads, in warps.
+    int even_block(std::int64_t size) const {
+        const std::int64_t warps = (size * traits().team + 31) / 32;
+        return static_cast<int>((warps + multiprocessors_ - 1) / multiprocessors_) * 32;
     }
 
     int resident_blocks(int block) const {
@@ -185,6 +191,9 @@ private:
     int block_for(std::int64_t size) const {
         int block = chosen_block_;
         if (chosen_by_user_) return block;
+        // Where one block takes the shared memory of a multiprocessor, for what all its teams read, all run at once.
+        if (traits().team > 1 && facts_.blocks_per_multiprocessor == 1 && even_block(size) <= block)
+            return even_block(size);
         while (block > 32 && size * traits().team <= static_cast<std::int64_t>(multiprocessors_) * block / 2)
             block /= 2;
         if (traits().costs_differ && traits().team == 1) {

@@ -36,8 +36,9 @@
 /// The same up to another number of iterations, a constant expression.
 #define MYRIAD_UNROLL_UP_TO(count) MYRIAD_PRAGMA(unroll(count))
 #define MYRIAD_PRAGMA(text) _Pragma(#text)
-/// In device code, unrolls the following loop over steps, in which constants are reloaded in every iteration.
-#define MYRIAD_UNROLL_BY_FOUR _Pragma("unroll 4")
+/// In device code, unrolls the following long loop by a constant expression: over steps, in which constants are reloaded
+/// in every iteration, or over values that are loaded from memory, so that they are under way together.
+#define MYRIAD_UNROLL_BY(count) MYRIAD_PRAGMA(unroll(count))
 /// Keeps device code from unrolling the following loop.
 #define MYRIAD_ROLLED _Pragma("unroll 1")
 /// The same as MYRIAD_UNROLL in device code, which can only then keep what it indexes in registers; on the CPU the
@@ -49,7 +50,7 @@
 #define MYRIAD_RECONVERGE static_cast<void>(0)
 #define MYRIAD_UNROLL
 #define MYRIAD_UNROLL_UP_TO(count)
-#define MYRIAD_UNROLL_BY_FOUR
+#define MYRIAD_UNROLL_BY(count)
 #define MYRIAD_ROLLED
 #define MYRIAD_UNROLL_ON_GPU
 #define MYRIAD_ROUNDED_PRODUCT(a, b) ((a) * (b))
@@ -79,7 +80,7 @@
 #define MYRIAD_OPTIMISATION_BARRIER(value) static_cast<void>(value)
 #define MYRIAD_MEMORY_BARRIER static_cast<void>(0)
 #define MYRIAD_RECONVERGE static_cast<void>(0)
-#define MYRIAD_UNROLL_BY_FOUR
+#define MYRIAD_UNROLL_BY(count)
 #define MYRIAD_ROLLED
 #define MYRIAD_ROUNDED_PRODUCT(a, b) ((a) * (b))
 #if defined(__clang__)

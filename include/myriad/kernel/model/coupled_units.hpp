@@ -115,29 +115,29 @@ MYRIAD_FUNCTION void slopes_of_unit(int unit, const auto& t, const R* y, const a
     for (int c = 0; c < count; ++c) slopes[unit * count + c] = values[c];
 }
 
-/// The sums of `rows` units from unit `first` on, together so that their additions do not wait for each other; each in
-/// the order of its row, so that they have the same bits however units are taken together.
-template <class Unit, int units, int k, int rows, class R, class Real>
-MYRIAD_FUNCTION void sum_coupling(int first, const Real* matrix, const R* published, R* sums) {
+/// The sums of the units `unit_of(0)` to `unit_of(rows - 1)`, together so that their additions do not wait for each
+/// other; each in the order of its row, so that they have the same bits however units are taken together. On a GPU the
+/// entries of so many columns are loaded at a time.
+template <class Unit, int units, int k, int rows, int columns, class R, class Real>
+MYRIAD_FUNCTION vec<R, rows> sum_coupling(auto&& unit_of, const Real* matrix, const R* published) {
     constexpr coupling_layout layout = coupling_layout_of<Unit, units, k>;
     constexpr int entries = layout.entries_of_row();
     const R* of_all = published + layout.publication * units;
-    R sum[rows];
+    vec<R, rows> sums;
     MYRIAD_UNROLL
-    for (int r = 0; r < rows; ++r) sum[r] = R(0);
-    MYRIAD_ROLLED
+    for (int r = 0; r < rows; ++r) sums[r] = R(0);
+    MYRIAD_UNROLL_BY(columns)
     for (int e = 0; e < entries; ++e) {
         MYRIAD_UNROLL
         for (int r = 0; r < rows; ++r) {
-            const int column = layout.column(first + r, e);
+            const int column = layout.column(unit_of(r), e);
             if constexpr (layout.shape == coupling_shape::banded) {
                 if (!layout.in_matrix(column)) continue;
             }
-            sum[r] = fma(matrix[layout.entry(first + r, e)], of_all[column], sum[r]);
+            sums[r] = fma(matrix[layout.entry(unit_of(r), e)], of_all[column], sums[r]);
         }
     }
-    MYRIAD_UNROLL
-    for (int r = 0; r < rows; ++r) sums[k * units + first + r] = sum[r];
+    return sums;
 }
 
 /// All sums of couplings; `first` is where the entries of the first matrix lie.
@@ -148,12 +148,17 @@ MYRIAD_FUNCTION void sum_couplings(const Real* first, const R* published, R* sum
         constexpr int number = decltype(k)::value;
         constexpr bool unrolled = units * n_unit_state<Unit> <= largest_unrolled_system;
         const Real* matrix = first + first_coupling_entry<Unit, units, number>;
-        detail::each_unit<0, units, together, unrolled>([&](int unit) MYRIAD_LAMBDA {
-            detail::sum_coupling<Unit, units, number, together>(unit, matrix, published, sums);
-        });
-        detail::each_unit<units / together * together, units, 1, unrolled>([&](int unit) MYRIAD_LAMBDA {
-            detail::sum_coupling<Unit, units, number, 1>(unit, matrix, published, sums);
-        });
+        const auto sum = [&](auto rows, int unit) MYRIAD_LAMBDA {
+            constexpr int count = decltype(rows)::value;
+            const vec<R, count> found = detail::sum_coupling<Unit, units, number, count, 1>(
+                [=](int r) MYRIAD_LAMBDA { return unit + r; }, matrix, published);
+            MYRIAD_UNROLL
+            for (int r = 0; r < count; ++r) sums[number * units + unit + r] = found[r];
+        };
+        detail::each_unit<0, units, together, unrolled>(
+            [&](int unit) MYRIAD_LAMBDA { sum(constant_index<together>{}, unit); });
+        detail::each_unit<units / together * together, units, 1, unrolled>(
+            [&](int unit) MYRIAD_LAMBDA { sum(constant_index<1>{}, unit); });
     });
 }
 

@@ -61,7 +61,8 @@ constexpr int n_coupling_of() {
 template <class Unit>
 inline constexpr int n_coupling = n_coupling_of<Unit>();
 
-/// Where the entries of a matrix lie, row by row, and how many of them a row has.
+/// Where the entries of a matrix lie, and how many of them a row has. Those of rows that follow each other lie side by
+/// side, so that the threads of a team, and the sums that one thread forms together, read them at once.
 struct coupling_layout {
     int publication;
     coupling_shape shape;
@@ -80,7 +81,7 @@ struct coupling_layout {
         return j < 0 ? j + units : j >= units ? j - units : j;
     }
     MYRIAD_FUNCTION int entry(int row, int k) const {
-        return shape == coupling_shape::circulant ? k : row * entries_of_row() + k;
+        return shape == coupling_shape::circulant ? k : k * units + row;
     }
     MYRIAD_FUNCTION bool in_matrix(int column) const { return column >= 0 && column < units; }
 };

@@ -372,12 +372,13 @@ struct part_of_units {
                 constexpr int number = decltype(k)::value;
                 const R* const matrix =
                     inputs.shared + Whole::first_coupling + first_coupling_entry<unit_type, units, number>;
+                // 128 bubbles in teams of 32 threads took 87, 80 and 77 ms with 4, 8 and 16 columns (NVIDIA H200).
+                constexpr int columns = 16;
+                const vec<R, parts> sums = detail::sum_coupling<unit_type, units, number, parts, columns>(
+                    [](int part) MYRIAD_LAMBDA { return unit_of(part); }, matrix, of_team + layout::published);
                 MYRIAD_UNROLL
-                for (int part = 0; part < parts; ++part) {
-                    if (is_own(part))
-                        detail::sum_coupling<unit_type, units, number, 1>(
-                            unit_of(part), matrix, of_team + layout::published, of_team + layout::sum);
-                }
+                for (int part = 0; part < parts; ++part)
+                    if (is_own(part)) of_team[layout::sum + number * units + unit_of(part)] = sums[part];
             });
             together::synchronise();
         }

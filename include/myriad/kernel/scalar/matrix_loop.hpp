@@ -64,7 +64,7 @@ struct matrix_loop {
         if constexpr (unrolled) {
             static_for<K::value, n>(f);
         } else {
-            MYRIAD_UNROLL_BY_FOUR
+            MYRIAD_UNROLL_BY(4)
             for (int i = k; i < n; ++i) f(i);
         }
     }
@@ -74,7 +74,7 @@ struct matrix_loop {
         if constexpr (unrolled) {
             static_for<K::value + 1, n>(f);
         } else {
-            MYRIAD_UNROLL_BY_FOUR
+            MYRIAD_UNROLL_BY(4)
             for (int i = k + 1; i < n; ++i) f(i);
         }
     }
@@ -84,7 +84,7 @@ struct matrix_loop {
         if constexpr (unrolled) {
             static_for<0, K::value>(f);
         } else {
-            MYRIAD_UNROLL_BY_FOUR
+            MYRIAD_UNROLL_BY(4)
             for (int i = 0; i < k; ++i) f(i);
         }
     }
