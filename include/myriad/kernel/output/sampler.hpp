@@ -100,7 +100,7 @@ private:
         detail::ensure_interpolant<Model>(s, step, due);
         while (any(due)) {
             const S theta = (o.next - step.t) / step.h;
-            const auto inside = detail::interpolate(step, theta);
+            const auto inside = inside_step(step, theta);
             vec<S, n> y;
             MYRIAD_UNROLL
             for (int c = 0; c < n; ++c) y[c] = select(is_past(o.next, t1), trial.y[c], inside[c]);
@@ -110,6 +110,16 @@ private:
                 set_next(i);
             });
             due = accepted & falls_between(t0, last);
+        }
+    }
+
+    /// The state at that part of a step.
+    MYRIAD_FUNCTION vec<S, n> inside_step(const step_data<Method, S, n>& step, const S& theta) const {
+        if constexpr (shares_stages<Method, Model, S>) {
+            const vec<S, n> y = s.data.y;  // a copy, as the loop over components indexes memory
+            return detail::rosenbrock_interpolation<Method>(y, detail::stages_of_thread<Method, Model, S>(), theta);
+        } else {
+            return detail::interpolate(step, theta);
         }
     }
 

@@ -312,10 +312,10 @@ MYRIAD_FUNCTION void rosenbrock_step(const S& t, const S& h, const S& t1, const 
     advance(constant_index<Method::stages>{});
 }
 
-/// State at t + theta h, 0 <= theta <= 1; for a dual theta, with its derivative.
-template <rosenbrock_method Method, class S, int n, class T>
-MYRIAD_FUNCTION vec<T, n> rosenbrock_interpolation(const vec<S, n>& y, const trial_step<Method, S, n>& trial,
-                                                   const T& theta) {
+/// State at t + theta h, 0 <= theta <= 1; for a dual theta, with its derivative. `trial` has the stages u and the new
+/// state y.
+template <rosenbrock_method Method, class S, int n, class Trial, class T>
+MYRIAD_FUNCTION vec<T, n> rosenbrock_interpolation(const vec<S, n>& y, const Trial& trial, const T& theta) {
     using R = real_of<S>;
     const T rest = S(R(1)) - theta;
     vec<T, n> out;

@@ -48,7 +48,7 @@ inline constexpr int bytes_loaded_at_once = 16;
 template <class Method, class Model, class R>
 struct stage_memory {
     vec<vec<R, n_state<Model>>, Method::stages> u;
-    vec<R, n_state<Model>> argument;  // of a stage, and the new state
+    vec<R, n_state<Model>> y;  // the argument of a stage, and the new state
 };
 template <class Method, class Model, class R>
 struct step_memory : stage_memory<Method, Model, R> {
@@ -95,7 +95,9 @@ constexpr int shared_step_bytes_of() {
 template <class Method, class Model, class R>
 inline constexpr int shared_step_bytes = shared_step_bytes_of<Method, Model, R>();
 
-#if defined(__CUDACC__)
+/// Whether a Rosenbrock method's stages lie there.
+template <class Method, class Model, class R>
+inline constexpr bool shares_stages = rosenbrock_method<Method> && (shared_step_bytes<Method, Model, R> > 0);
 /// Whether the factors lie there, too.
 template <class Method, class Model, class R>
 inline constexpr bool shares_factors =
@@ -103,14 +105,21 @@ inline constexpr bool shares_factors =
 
 /// This thread's, the first in the block's shared memory.
 template <class Memory, int bytes_of_thread>
-__host__ __device__ __forceinline__ Memory& step_memory_of_thread() {
+MYRIAD_FUNCTION Memory& step_memory_of_thread() {
 #if defined(__CUDA_ARCH__)
     return *reinterpret_cast<Memory*>(static_cast<char*>(memory_of_block()) + threadIdx.x * bytes_of_thread);
 #else
     return *static_cast<Memory*>(nullptr);  // never called
 #endif
 }
-#endif
+template <class Method, class Model, class R>
+using memory_of_rosenbrock_step = std::conditional_t<shares_factors<Method, Model, R>, step_memory<Method, Model, R>,
+                                                     stage_memory<Method, Model, R>>;
+/// The stages and the new state of the step that this thread has taken last, if they lie there.
+template <class Method, class Model, class R>
+MYRIAD_FUNCTION const stage_memory<Method, Model, R>& stages_of_thread() {
+    return step_memory_of_thread<memory_of_rosenbrock_step<Method, Model, R>, shared_step_bytes<Method, Model, R>>();
+}
 
 /// Where the loop's trial step is.
 template <class Method, class Model, class S>
@@ -158,7 +167,7 @@ public:
         : trial_(trial), memory_(step_memory_of_thread<memory, shared_step_bytes<Method, Model, R>>()) {}
 
     MYRIAD_FUNCTION vec<vec<R, n>, Method::stages>& u() { return memory_.u; }
-    MYRIAD_FUNCTION vec<R, n>& argument() { return memory_.argument; }
+    MYRIAD_FUNCTION vec<R, n>& argument() { return memory_.y; }
     MYRIAD_FUNCTION const vec<R, n>& solved(int i, const vec<R, n>&) { return memory_.u[i]; }
     template <class I>
     MYRIAD_FUNCTION void keep(I entry, const R& value) {
@@ -177,18 +186,17 @@ public:
     MYRIAD_FUNCTION void finish() {
         unrolled_loop<n>::all([&](auto c) MYRIAD_LAMBDA {
             static_for<0, Method::stages>([&](auto i) MYRIAD_LAMBDA { trial_.u[i][c] = memory_.u[i][c]; });
-            trial_.y[c] = memory_.argument[c];
+            trial_.y[c] = memory_.y[c];
         });
     }
 
 private:
-    using memory = std::conditional_t<shares_factors<Method, Model, R>, step_memory<Method, Model, R>,
-                                      stage_memory<Method, Model, R>>;
+    using memory = memory_of_rosenbrock_step<Method, Model, R>;
     trial_step<Method, R, n>& trial_;
     memory& memory_;
 };
 template <class Method, class Model, class R>
-using step_storage = std::conditional_t<(shared_step_bytes<Method, Model, R> > 0), shared_step<Method, Model, R>,
+using step_storage = std::conditional_t<shares_stages<Method, Model, R>, shared_step<Method, Model, R>,
                                         own_step<Method, Model, R>>;
 #else
 template <class Method, class Model, class R>
