@@ -55,7 +55,7 @@ public:
         records(add);
         grow(memory_, bytes_for(count, arrays), per_instance);
         grow(records_, bytes_for(count, records), per_instance);
-        scheduler_.reserve(count, host.phases, launcher_.least_instances());
+        scheduler_.reserve(count, host.phases, launcher_);
         std::size_t to_stage = 0;
         const auto stage = [&](auto* array, std::int64_t components, array_access, array_kind) {
             if (!is_pinned(array)) to_stage += bytes_of(array, components * count);

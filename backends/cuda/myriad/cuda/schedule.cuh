@@ -24,8 +24,8 @@ public:
         return wanted_ == schedule::by_cost || wanted_ == schedule::automatic ? 2 * sizeof(std::uint32_t) : 0;
     }
     /// Allocates memory for calls with that many phases; no work may be in progress.
-    void reserve(std::int64_t count, std::int64_t phases, std::int64_t worthwhile) {
-        const schedule how = chosen(count, phases, worthwhile);
+    void reserve(std::int64_t count, std::int64_t phases, const kernel_launcher<R>& kernel) {
+        const schedule how = chosen(count, phases, kernel);
         if (how == schedule::by_cost) by_cost_.reserve(count);
         if (how != schedule::in_order) queue_.reserve(sizeof(unsigned long long));
     }
@@ -35,10 +35,10 @@ public:
     void forget_costs() { costs_known_ = false; }
 
     void launch(kernel_launcher<R>& kernel, arguments now, cudaStream_t where) {
-        const schedule how = chosen(now.size, now.phases, kernel.least_instances());
+        const schedule how = chosen(now.size, now.phases, kernel);
         kernel.note(how);
         if (how == schedule::in_order) return kernel.launch(now, nullptr, where);
-        reserve(now.size, now.phases, kernel.least_instances());
+        reserve(now.size, now.phases, kernel);
         if (how == schedule::dynamic) return launch_with_queue(kernel, now, where);
         now.cost = by_cost_.cost();
         if (!costs_known_) {
@@ -57,12 +57,14 @@ public:
     }
 
 private:
-    /// Sorting pays off if most of the work is still ahead. `worthwhile`: number of threads that keeps the GPU's warp
-    /// schedulers busy.
-    schedule chosen(std::int64_t count, std::int64_t phases, std::int64_t worthwhile) const {
+    /// Sorting pays off if most of the work is still ahead. With fewer phases, only steps that take much longer than to
+    /// take the next instance make up for that.
+    schedule chosen(std::int64_t count, std::int64_t phases, const kernel_launcher<R>& kernel) const {
         const bool sortable = count <= most_sorted;
-        if (wanted_ == schedule::automatic)
-            return sortable && phases >= 4 && count > worthwhile ? schedule::by_cost : schedule::in_order;
+        if (wanted_ == schedule::automatic) {
+            if (sortable && phases >= 4 && count > kernel.least_instances()) return schedule::by_cost;
+            return kernel.makes_wait(count) ? schedule::dynamic : schedule::in_order;
+        }
         return wanted_ == schedule::by_cost && !sortable ? schedule::dynamic : wanted_;
     }
     void launch_with_queue(kernel_launcher<R>& kernel, const arguments& now, cudaStream_t where) {
