@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,7 +15,7 @@ from .device import is_on_gpu
 from .errors import Error
 from .expression import Node
 from .inputs import by_name, whole
-from .solve import solve
+from .solve import device_names, solve
 from .statuses import first_failure
 from .symbols import time as time_symbol
 
@@ -69,11 +69,10 @@ class Batched:
             if name in options:
                 raise Error(f"a batched function chooses {name}= itself: leave it out")
         self._initial = [name for name in self.by if name in components.states]
-        #: whether all results are states, which a GPU can keep
-        self.gives_states_alone = all(one is not time_symbol and one in components.states for one in self.of)
+        self._of_states = all(one is not time_symbol and one in components.states for one in self.of)
         self._derived = {f"{c}_by_{k}" for c in components.states for k in self.by}
         self._sweep, self._start, self._options = given["sweep"], given["start"], dict(options)
-        samples = options.get("samples")
+        samples = self._option("samples", None)
         self.n_samples = None if samples is None else self._count(samples)  #: None without samples
         if self.n_samples is not None and any(one is time_symbol for one in self.of):
             raise Error("of= has the time at which the last phase ended, which has no samples: leave out samples=")
@@ -89,19 +88,42 @@ class Batched:
         """The shape of the result for one set of values."""
         return (len(self.of),) if self.n_samples is None else (self.n_samples, len(self.of))
 
+    def _option(self, name: str, usual: Any) -> Any:
+        common = self._options.get("options")
+        return self._options.get(name, usual if common is None else getattr(common, name, usual))
+
+    @property
+    def real(self) -> np.dtype[Any]:
+        """The type of the numbers that it integrates."""
+        return np.dtype("f4" if self._option("precision", "double") == "float" else "f8")
+
+    @property
+    def gpu(self) -> int | None:
+        """The number of the GPU that takes values of the type `real` in its memory, and keeps the results there; None
+        if they have to be on the host, as where results are no states."""
+        needs_host = self._option("make_consistent", False) or self._option("invalid", "refuse") == "mark"
+        if needs_host or not self._of_states:
+            return None
+        names, _ = device_names(self._option("device", "auto"), self._option("interpreted", None))
+        return int(names[0].partition(":")[2]) if len(names) == 1 and names[0].startswith("cuda") else None
+
     def run(self, values: Any, sensitivities: bool = False) -> Run:
         """The run of sets of values in the rows of an array, of NumPy's or on a GPU."""
-        given = {name: values[:, i] if isinstance(values, np.ndarray) else _contiguous(values[:, i])
-                 for i, name in enumerate(self.by)}
+        return self.run_columns([values[:, i] if isinstance(values, np.ndarray) else _contiguous(values[:, i])
+                                 for i in range(len(self.by))], sensitivities)
+
+    def run_columns(self, columns: Sequence[Any], sensitivities: bool = False) -> Run:
+        """The same of one array of values for each component of by=."""
+        given = dict(zip(self.by, columns))
         options = self._options
         if not sensitivities:
-            options = {key: self._of_states(value) if key in ("rtol", "atol") else value
+            options = {key: self._tolerances_of_states(value) if key in ("rtol", "atol") else value
                        for key, value in options.items() if key != "sensitivity_control"}
         sweep = {**self._sweep, **{name: value for name, value in given.items() if name not in self._initial}}
         return solve(self.model, sweep, start={**self._start, **{name: given[name] for name in self._initial}},
                      sensitivities=self.by if sensitivities else None, **options)
 
-    def _of_states(self, tolerance: Any) -> Any:
+    def _tolerances_of_states(self, tolerance: Any) -> Any:
         if not hasattr(tolerance, "items"):
             return tolerance
         return {name: value for name, value in tolerance.items() if name not in self._derived}
@@ -115,10 +137,17 @@ class Batched:
             raise Error(f"the argument has the type {array.dtype}: give real numbers")
         return np.ascontiguousarray(array.reshape(-1, len(self.by)), dtype=float), array.shape[:-1]
 
+    def _stacked(self, arrays: Iterable[Array], run: Run) -> Array:
+        """Arrays [row, ...] as one [array, ..., row], as the run has them in memory; NaN where an instance has
+        failed."""
+        found = np.stack([array.T for array in arrays])
+        if (failed := run.status >= first_failure).any():
+            found[..., failed] = np.nan
+        return found
+
     def _values(self, run: Run, batch: tuple[int, ...]) -> Array:
-        found = np.stack([run.t if one is time_symbol else run[one] for one in self.of], axis=-1)
-        found[run.status >= first_failure] = np.nan
-        return found.reshape(*batch, *self.shape)
+        found = self._stacked((run.t if one is time_symbol else run[one] for one in self.of), run)
+        return found.T.reshape(*batch, *self.shape)
 
     def __call__(self, values: Values) -> Array:
         """The results for one set of values, or for those of a batch."""
@@ -130,15 +159,16 @@ class Batched:
         no derivative is NaN."""
         rows, batch = self._rows(values)
         run = self.run(rows, sensitivities=True)
-        slopes = np.stack([run.sensitivity[one] for one in self.of], axis=-2)
-        slopes[run.status >= first_failure] = np.nan
-        return self._values(run, batch), slopes.reshape(*batch, *self.shape, len(self.by))
+        slopes = self._stacked((run.sensitivity[one, k] for k in self.by for one in self.of), run)
+        slopes = slopes.reshape(len(self.by), len(self.of), *slopes.shape[1:])
+        return self._values(run, batch), slopes.T.reshape(*batch, *self.shape, len(self.by))
 
     def to_jax(self) -> Callable[[Any], Any]:
         """The function for JAX arrays, under `jit`, `vmap`, `grad`, `jvp` and `vjp`; a batch by `vmap` is one call of
         `solve`. The derivatives are along the solution, with its tolerances; there are no second ones. Results have the
-        type of the argument: double precision needs `jax.config.update("jax_enable_x64", True)`. Needs the package
-        jax. Arrays on a GPU go by the host."""
+        type of the argument: double precision needs `jax.config.update("jax_enable_x64", True)`. Arrays on the GPU
+        that integrates stay there if they have the type of the integration and all of of= are states; others go by the
+        host. Needs the package jax. JAX keeps the function for as long as the process runs."""
         from .jax_function import jax_function
 
         return jax_function(self)

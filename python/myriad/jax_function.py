@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""A batched function for JAX: a callback with a rule for its derivatives."""
+"""A batched function for JAX, with a rule for its derivatives: a call on the GPU that integrates, where the argument is
+there, and a callback to the host otherwise."""
 
 from __future__ import annotations
 
@@ -8,53 +9,81 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from . import compiler, jax_gpu
 from .errors import Error
+from .statuses import first_failure
 
 if TYPE_CHECKING:
     from .function import Batched
 
 
-def jax_function(function: Batched) -> Callable[[Any], Any]:
-    """As `Batched.to_jax`."""
+def jax_function(function: Batched, platform: str = "cuda") -> Callable[[Any], Any]:
+    """As `Batched.to_jax`. `platform` is JAX's name of that whose arrays are in the memory of a GPU of Myriad's."""
     try:
         import jax
         import jax.numpy as jnp
     except ImportError:
         raise Error("to_jax needs the package jax: `pip install jax`") from None
 
-    def shapes(theta: Any, *more: int) -> Any:
-        return jax.ShapeDtypeStruct((*theta.shape[:-1], *function.shape, *more), theta.dtype)
+    n_by = len(function.by)
 
-    # `vmap` gives callbacks its axis as the first, and so calls them once.
-    def values(theta: Any) -> Any:
-        def on_host(rows: Any) -> Any:
-            return function(np.asarray(rows)).astype(theta.dtype)
+    def may_stay(theta: Any) -> bool:
+        """Whether programs for the platform integrate where the argument is."""
+        if theta.dtype != function.real or theta.size == 0 or function.gpu is None:
+            return False
+        try:
+            jax.devices(platform)
+        except RuntimeError:  # the platform is not there
+            return False
+        return compiler.known_compiler() is not None
 
-        return jax.pure_callback(on_host, shapes(theta), theta, vmap_method="expand_dims")
+    def solved(with_jacobian: bool) -> Callable[[Any], Any]:
+        """The values, or values and derivatives, for an argument with any axes of a batch."""
+        shapes = [function.shape, (*function.shape, n_by)][:1 + with_jacobian]
 
-    def with_jacobian(theta: Any) -> Any:
-        def on_host(rows: Any) -> Any:
-            return tuple(found.astype(theta.dtype) for found in function.with_jacobian(np.asarray(rows)))
+        def on_host(theta: Any) -> Any:
+            def call(rows: Any) -> list[Any]:
+                rows = np.asarray(rows)
+                found = function.with_jacobian(rows) if with_jacobian else [function(rows)]
+                return [array.astype(theta.dtype, copy=False) for array in found]
 
-        return jax.pure_callback(on_host, (shapes(theta), shapes(theta, len(function.by))), theta,
-                                 vmap_method="expand_dims")
+            # `mapped` makes a batch of what `vmap` asks for.
+            return jax.pure_callback(call, [jax.ShapeDtypeStruct((*theta.shape[:-1], *shape), theta.dtype)
+                                            for shape in shapes], theta)
+
+        def on_gpu(theta: Any) -> Any:
+            *found, status = jax_gpu.call(function, with_jacobian, theta.reshape(-1, n_by))
+            marked = [jnp.where(status >= first_failure, jnp.nan, array) for array in found]  # instances are last
+            return [array.T.reshape(*theta.shape[:-1], *shape) for array, shape in zip(marked, shapes)]
+
+        @jax.jit
+        def by_platform(theta: Any) -> Any:
+            if not may_stay(theta):
+                return on_host(theta)
+            jax_gpu.register("CUDA" if platform == "cuda" else platform)
+            return jax.lax.platform_dependent(theta, **{platform: on_gpu}, default=on_host)
+
+        mapped = jax.custom_batching.custom_vmap(by_platform)
+        mapped.def_vmap(lambda size, is_mapped, theta: (mapped(theta), [True] * len(shapes)))
+        return mapped
+
+    values, values_and_jacobian = solved(False), solved(True)
 
     @jax.custom_jvp
     def of_floats(theta: Any) -> Any:
-        return values(theta)
+        return values(theta)[0]
 
     @of_floats.defjvp
     def _(primals: Any, tangents: Any) -> Any:
-        found, jacobian = with_jacobian(primals[0])
-        batch = "abcdefgh"[:primals[0].ndim - 1]
-        results = "xy"[:len(function.shape)]
-        return found, jnp.einsum(f"{batch}{results}i,{batch}i->{batch}{results}", jacobian, tangents[0])
+        found, jacobian = values_and_jacobian(primals[0])
+        along = tangents[0].reshape(*tangents[0].shape[:-1], *[1] * len(function.shape), n_by)
+        return found, (jacobian * along).sum(-1)
 
     def call(theta: Any) -> Any:
         theta = jnp.asarray(theta)
-        if theta.ndim == 0 or theta.shape[-1] != len(function.by):
+        if theta.ndim == 0 or theta.shape[-1] != n_by:
             raise Error(f"the argument has the shape {theta.shape}: its last axis has the values of "
-                        f"{', '.join(function.by)}, {len(function.by)} in number")
+                        f"{', '.join(function.by)}, {n_by} in number")
         if not jnp.issubdtype(theta.dtype, jnp.floating):
             theta = theta.astype(jnp.result_type(float))
         return of_floats(theta)

@@ -210,6 +210,8 @@ class Sensitivities(Mapping[Any, Any]):
 
 def note(run: Run) -> str | None:
     """What to know of derivatives that do not exist."""
+    if not run._components.event_names:  # nor does what counts them have to be copied from a GPU
+        return None
     count = int(np.count_nonzero(run["undefined_derivatives"]))
     if count == 0:
         return None

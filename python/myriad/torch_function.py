@@ -6,6 +6,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from .device import is_on_gpu
 from .errors import Error
 from .statuses import first_failure
@@ -28,7 +30,8 @@ def torch_function(function: Batched) -> Callable[[Any], Any]:
         return torch.where(failed.reshape(-1, *[1] * (found.ndim - 1)), torch.nan, found)
 
     def stays_on_gpu(theta: Any) -> bool:
-        return is_on_gpu(theta) and theta.dtype == torch.float64 and function.gives_states_alone
+        real = torch.float64 if function.real == np.float64 else torch.float32
+        return is_on_gpu(theta) and theta.dtype == real and theta.device.index == function.gpu
 
     def solved(theta: Any, wanted: bool) -> tuple[Any, Any]:
         """Values, and derivatives if they are wanted."""

@@ -465,6 +465,14 @@ NB_MODULE(_core, m) {
     });
     m.def("no_gpu", &device::no_gpu);
     m.def("wait_for_gpu", &wait_for_gpu, nb::call_guard<nb::gil_scoped_release>());
+    m.def(
+        "copy_on_gpu",
+        [](int device, std::uintptr_t stream, const std::vector<std::array<std::size_t, 3>>& all) {
+            std::vector<copy_of_bytes> copies;
+            for (const auto& [to, from, bytes] : all) copies.push_back({to, from, bytes});
+            copy_on_gpu(device, stream, copies);
+        },
+        "device"_a, "stream"_a, "copies"_a, nb::call_guard<nb::gil_scoped_release>());
     m.def("facts_of_device_array", &facts_of_device_array);
     m.def("facts_of_own_array", &facts_of_own_array);
     m.def("may_use_gpus", &host::may_use_gpus);

@@ -53,6 +53,15 @@ void wait_for_gpu(int device) {
     MYRIAD_CUDA(cudaDeviceSynchronize());
 }
 
+void copy_on_gpu(int device, std::uintptr_t stream, const std::vector<copy_of_bytes>& all) {
+    const cuda::current_device here(device);
+    const auto in_stream = reinterpret_cast<cudaStream_t>(stream);
+    for (const copy_of_bytes& one : all)
+        MYRIAD_CUDA(cudaMemcpyAsync(reinterpret_cast<void*>(one.to), reinterpret_cast<const void*>(one.from), one.bytes,
+                                    cudaMemcpyDeviceToDevice, in_stream));
+    cuda::check(cudaStreamSynchronize(in_stream), "a copy of results on the GPU");
+}
+
 namespace {
 
 /// The kernels of studies by device.

@@ -2,10 +2,13 @@
 // Kernels for GPUs that NVRTC compiled: programs loaded on devices, and launched by the engine of backends/cuda.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include <cuda_runtime.h>
 
@@ -27,6 +30,13 @@ struct gpu_facts {
 gpu_facts facts_of_gpu(int device);
 /// Waits for all work on the GPU, also of other libraries.
 void wait_for_gpu(int device);
+/// Copies within a GPU's memory, each from one address to another so many bytes, in a stream of another library, and
+/// waits for it.
+struct copy_of_bytes {
+    std::uintptr_t to, from;
+    std::size_t bytes;
+};
+void copy_on_gpu(int device, std::uintptr_t stream, const std::vector<copy_of_bytes>& all);
 
 /// A program as machine code or PTX, and the devices it was loaded on; kept for the life of the process.
 class device_program {

@@ -76,7 +76,7 @@ void resident<R>::take_inputs(const ensemble<R>& instances, bool mark_invalid) {
     const std::int64_t size = instances.data.size;
     const auto stream = engine_->in_stream();
     const cuda::current_device here(number());
-    scratch_.reserve(sizeof none);
+    scratch_.reserve(sizeof(host::work_count));  // for `work` too, as to get memory anew takes longer than to copy
     for (const device_input<R>& input : instances.on_device) {
         std::byte* const to = engine_->find(call_->arguments, input.component).address;
         MYRIAD_CUDA(cudaMemcpyAsync(to, input.values, static_cast<std::size_t>(size) * sizeof(R),
@@ -154,16 +154,19 @@ void resident<R>::integrate(ensemble<R>& instances, const options& o, host::data
     }
     bring(data.status.data(), static_cast<std::size_t>(data.size));
     host::summarise(data, result, data.size);
-    if (result.first_failed >= 0) {
-        const auto all = [&](const auto& array, int components) {
-            for (int c = 0; c < components; ++c)
-                bring(array.component(c), static_cast<std::size_t>(data.size) * sizeof(array.component(c)[0]));
+    if (result.first_failed >= 0) {  // whose values the report has
+        const auto one = [&](auto& array) {
+            for (int c = 0; c < array.components(); ++c) {
+                auto* const value = array.component(c) + result.first_failed;
+                const auto there = engine_->find(call_->arguments, value);
+                if (there.address != nullptr) engine_->copy_to_host(value, there.address, sizeof *value);
+            }
         };
-        all(data.t, 1);
-        all(data.state, data.shape->n_state);
-        all(data.parameter, data.shape->n_parameter);
-        all(data.t_begin, data.t_begin.components());
-        all(data.t_end, data.t_end.components());
+        bring(data.t.data(), static_cast<std::size_t>(data.size) * sizeof data.t.data()[0]);  // for notes on all
+        one(data.state);
+        one(data.parameter);
+        one(data.t_begin);
+        one(data.t_end);
         host::summarise(data, result, data.size);
     }
     host::set_work(result, {}, work());

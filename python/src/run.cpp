@@ -184,13 +184,16 @@ std::unique_ptr<report<R>> solve(const std::vector<placed_kernel>& on, ensemble<
             "copy them to the host, or name one device");
     auto result = std::make_unique<report<R>>();
     auto& data = instances.data;
-    host::solve_call<R> call(where, o, models.front(), data, instances.samples, result->records);
+    // Samples that stay on the GPU are set here when they are copied: their memory, which may be large, is not touched.
+    const bool may_stay = on_gpu && on.size() == 1 && results == results_are::anywhere;
+    host::solve_call<R> call(where, o, models.front(), data, instances.samples, result->records,
+                             may_stay ? host::new_samples::unset : host::new_samples::cleared);
     try {
         if (on.size() > 1) {
             integrate_on_several<R>(on, models, o, data, call, *result);
         } else if (auto gpu =
-                       on_gpu ? std::make_shared<resident<R>>(*on.front().kernel, models.front(), call) : nullptr;
-                   gpu != nullptr && results == results_are::anywhere && gpu->fits(instances)) {
+                       may_stay ? std::make_shared<resident<R>>(*on.front().kernel, models.front(), call) : nullptr;
+                   gpu != nullptr && gpu->fits(instances)) {
             instances.gpu = result->gpu = gpu;
             gpu->integrate(instances, o, call.check(), *result);
         } else {
@@ -198,6 +201,7 @@ std::unique_ptr<report<R>> solve(const std::vector<placed_kernel>& on, ensemble<
                     "the sweep has arrays on the GPU, whose memory does not suffice to "
                     "integrate all of it at once",
                     host::cure, "divide it into smaller parts");
+            if (may_stay) instances.samples.clear();
             call.integrate(*result);
         }
     } catch (const interruption&) {

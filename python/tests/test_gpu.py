@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Models on a GPU: `scripts/gpu.sh --python` runs these, which need NumPy and pytest alone."""
 
+import concurrent.futures
 import os
 import signal
 import subprocess
@@ -151,6 +152,60 @@ def test_arrays_of_other_libraries(library):
         given, back = other.numpy.asarray(begin), lambda a: np.asarray(other.dlpack.from_dlpack(a))
     run, same = van_der_pol(given, 0), van_der_pol(begin, 0)
     assert np.array_equal(run["x"], same["x"]) and np.array_equal(back(run.device["x"]), same["x"])
+
+
+@pytest.fixture
+def jax():
+    jax = pytest.importorskip("jax")
+    jax.config.update("jax_enable_x64", True)
+    if jax.default_backend() != "gpu":
+        pytest.skip("JAX has no GPU")
+    return jax
+
+
+def prey_and_predator(device, **more):
+    prey, predator = my.states("prey predator")
+    birth, hunt, death, growth = rates = my.parameters("birth hunt death growth")
+    model = my.model({prey: birth * prey - hunt * prey * predator,
+                      predator: growth * prey * predator - death * predator})
+    return my.batched(model, **{**dict(by=[*rates, prey], of=[predator, prey], start={predator: 4}, time=(0, 20),
+                                       samples=np.arange(1.0, 21.0), rtol=1e-9, atol=1e-9, device=device), **more})
+
+
+@pytest.mark.parametrize("count", [1, 1000, 100_000])
+def test_gradients_in_jax_stay_on_the_gpu(jax, count):
+    sets = np.array([0.5, 0.025, 0.9, 0.028, 30]) * np.random.default_rng(1).uniform(0.8, 1.25, (count, 5))
+    there, here = prey_and_predator("cuda"), prey_and_predator("cpu")
+    gradients = jax.jit(jax.vmap(jax.grad(lambda theta: 0.5 * (there.to_jax()(theta)**2).sum())))
+    assert "callback" not in gradients.lower(sets).as_text()
+    found = gradients(jax.numpy.asarray(sets))
+    assert found.devices() == {jax.devices()[0]}
+    some = slice(None, None, max(count // 100, 1))
+    values, slopes = here.with_jacobian(sets[some])
+    expected = np.einsum("stq,stqi->si", values, slopes)
+    np.testing.assert_allclose(found[some], expected, rtol=1e-6, atol=1e-6 * np.abs(expected).max())
+    np.testing.assert_allclose(there.to_jax()(sets[some]), values, rtol=1e-6, atol=1e-6)
+    for _ in range(20):  # XLA's and Myriad's work on the GPU are in order
+        np.testing.assert_allclose(gradients(jax.numpy.asarray(sets[::-1].copy()))[::-1], found, rtol=1e-9)
+
+
+def test_failures_in_jax_on_the_gpu(jax):
+    x, k = my.state("x"), my.parameter("k")
+    f = my.batched(my.model({x: k * x * x}, name="bursting"), by=[k], of=x, start={x: 1}, time=(0, 2), max_steps=1000,
+                   device="cuda").to_jax()
+    values = np.asarray(f(np.array([[0.1], [1.0]])))
+    assert np.isfinite(values[0]) and np.isnan(values[1])
+    with pytest.raises(Exception, match=r"\(k\) is nan in instance 1"):
+        jax.block_until_ready(jax.jit(f)(np.array([[0.1], [np.nan]])))
+    assert np.isfinite(f(np.array([0.1]))).all()
+
+
+def test_two_functions_in_jax_on_the_gpu_in_several_threads(jax):
+    sets = np.array([0.5, 0.025, 0.9, 0.028, 30]) * np.random.default_rng(1).uniform(0.8, 1.25, (2000, 5))
+    programs = [jax.jit(prey_and_predator("cuda", of=of).to_jax()) for of in ("prey", "predator")]
+    expected = [np.asarray(program(sets)) for program in programs]
+    with concurrent.futures.ThreadPoolExecutor(8) as threads:
+        assert all(threads.map(lambda i: np.array_equal(programs[i % 2](sets), expected[i % 2]), range(200)))
 
 
 def test_ptx_for_a_gpu_that_nvrtc_does_not_know(monkeypatch, tmp_path):

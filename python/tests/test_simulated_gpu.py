@@ -494,3 +494,123 @@ else:
     raise AssertionError("was not interrupted")
 assert solve({device}, 50).report.by_status == {{"success": 50}}
 """, MYRIAD_SIMULATED_GPUS=2)
+
+
+JAX = """
+import jax
+from myriad.jax_function import jax_function
+jax.config.update("jax_enable_x64", True)
+
+damping = my.parameter("damping")
+spring = my.model({x: v, v: -k * x - damping * v}, name="spring")
+sets = np.random.default_rng(0).uniform(0.1, 1, (7, 3))
+
+def function(device, **more):
+    usual = dict(by=[k, damping, v], of=[v, x], start={x: 1}, time=(0, 3), samples=4, rtol=1e-9, device=device)
+    return my.batched(spring, **{name: value for name, value in {**usual, **more}.items() if value is not None})
+
+def on_gpu(**more):  # as JAX's arrays on the CPU are in the memory of the simulated GPU
+    return jax_function(function("cuda", **more), platform="cpu")
+
+def loss(f):
+    return lambda theta: (f(theta)**2).sum()
+
+def close(a, b):
+    return np.allclose(a, b, rtol=1e-12, atol=1e-13)
+"""
+
+
+@pytest.fixture(scope="module")
+def run_jax(run):
+    pytest.importorskip("jax")
+    return lambda script, **variables: run(JAX + script, **variables)
+
+
+def test_jax_programs_on_a_gpu_have_the_results_and_derivatives_of_the_host_in_one_call(run_jax):
+    run_jax("""
+import myriad.function
+there, here = on_gpu(), function("cpu").to_jax()
+for theta in sets, sets[0], np.stack([sets, sets]):
+    found = there(theta)
+    assert found.shape == (*theta.shape[:-1], 4, 2) and close(found, here(theta))
+sizes, usual = [], myriad.function.solve
+myriad.function.solve = lambda *a, **o: (sizes.append(1), usual(*a, **o))[1]
+gradients = jax.jit(jax.vmap(jax.grad(loss(there))))
+found = gradients(sets)
+assert len(sizes) == 1
+myriad.function.solve = usual
+assert close(found, jax.vmap(jax.grad(loss(here)))(sets))
+assert close(jax.grad(lambda all: jax.vmap(loss(there))(all).sum())(sets), found)
+assert close(jax.vmap(jax.vmap(there))(np.stack([sets, sets]))[1], here(sets))
+assert close(jax.jacfwd(there)(sets[0]), jax.jacrev(here)(sets[0]))
+program = gradients.lower(sets).as_text()
+assert "myriad_solve" in program and "callback" not in program
+assert there(np.zeros((0, 3))).shape == (0, 4, 2)
+for more in {"of": x}, {"samples": None}, {"options": my.Options(samples=3), "samples": None}:
+    assert close(on_gpu(**more)(sets), function("cpu", **more)(sets))
+""")
+
+
+def test_jax_programs_that_a_gpu_cannot_integrate_go_by_the_host(run_jax):
+    run_jax("""
+def program(f, theta=sets):
+    return jax.jit(f).lower(theta).as_text()
+assert "callback" in program(on_gpu(), sets.astype(np.float32))
+for more in ({"of": [x, my.time], "samples": None}, {"make_consistent": True}, {"invalid": "mark"},
+             {"precision": "float"}):
+    assert "myriad_solve" not in program(on_gpu(**more)), more
+single = on_gpu(precision="float", rtol=1e-4)
+assert "myriad_solve" in program(single, sets.astype(np.float32))
+assert np.allclose(single(sets.astype(np.float32)), function("cpu")(sets), atol=1e-3)
+assert "myriad_solve" not in program(jax_function(function("cpu"), platform="cpu"))
+assert "myriad_solve" not in program(jax_function(function(["cuda:0", "cuda:1"]), platform="cpu"))
+""", MYRIAD_SIMULATED_GPUS=2)
+
+
+def test_jax_programs_on_a_gpu_tell_of_failures(run_jax):
+    run_jax("""
+failing = my.batched(my.model({x: k * x * x}, name="bursting"), by=[k], of=x, start={x: 1}, time=(0, 2), max_steps=1000,
+                     device="cuda")
+f = jax_function(failing, platform="cpu")
+values, slopes = f(np.array([[0.1], [1.0]])), jax.vmap(jax.jacrev(f))(np.array([[0.1], [1.0]]))
+assert np.isfinite(values[0]) and np.isnan(values[1]) and np.isfinite(slopes[0]).all() and np.isnan(slopes[1]).all()
+wrong = sets.copy()
+wrong[3, 1] = np.nan
+for f in on_gpu(), jax.jit(jax.vmap(jax.grad(loss(on_gpu())))):
+    assert "parameter 1 (damping) is nan in instance 3" in message(lambda: jax.block_until_ready(f(wrong)), Exception)
+there = jax_function(function("cuda:1"), platform="cpu")
+assert 'give device="cuda:0" to myriad.batched' in message(lambda: jax.block_until_ready(there(sets)), Exception)
+assert close(on_gpu()(sets), function("cpu")(sets))  # and goes on
+""", MYRIAD_SIMULATED_GPUS=2)
+
+
+def test_jax_programs_run_in_several_threads_and_after_their_functions_are_gone(run_jax):
+    run_jax("""
+import gc, sys
+sys.setswitchinterval(1e-5)
+def compiled(of):
+    return jax.jit(on_gpu(of=of)).lower(sets).compile()
+of_x, of_v = compiled(x), compiled(v)
+gc.collect()
+both = function("cpu")(sets)
+def check(number):
+    program, expected = ((of_x, both[..., 1:]), (of_v, both[..., :1]))[number % 2]
+    return close(program(sets), expected)
+with concurrent.futures.ThreadPoolExecutor(4) as threads:
+    assert all(threads.map(check, range(40)))
+""")
+
+
+def test_samples_that_stay_on_a_gpu_take_no_memory_of_the_host(run):
+    run("""
+import resource
+size, samples = 2000, 2000
+def peak():
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+solve("cuda", size, samples=10)
+before = peak()
+all = solve("cuda", size, samples=samples)
+taken, bytes_of_samples = peak() - before, size * samples * 8 * 3
+assert bytes_of_samples < taken < 1.5 * bytes_of_samples, (taken, bytes_of_samples)  # the simulated GPU's own
+assert np.isfinite(all["x"]).all() and np.array_equal(all["x"], on_host(all.device["x"]))
+""", MYRIAD_SIMULATED_MEGABYTES=4096)

@@ -41,9 +41,12 @@ void delete_pages(void* memory, std::size_t bytes) { ::operator delete (memory, 
 }  // namespace
 
 template <class T>
-component_array<T>::component_array(int components, std::int64_t size, T value)
+component_array<T>::component_array(int components, std::int64_t size)
     : size_(size), data_(allocate(static_cast<std::size_t>(components), static_cast<std::size_t>(size))) {
     components_ = components;
+}
+template <class T>
+component_array<T>::component_array(int components, std::int64_t size, T value) : component_array(components, size) {
     fill(value);
 }
 template <class T>

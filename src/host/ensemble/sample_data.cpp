@@ -17,8 +17,8 @@ sample_data<R>::sample_data(int n_state, const sample_options& o, std::int64_t o
     require(capacity <= std::numeric_limits<std::int64_t>::max() / size, named_option("samples.capacity"), " ",
             o.capacity, " times ", of_instances, " instances exceeds any memory", cure, "take fewer samples");
     const std::int64_t cells = size * capacity;
-    time = component_array<R>(1, cells, std::numeric_limits<R>::quiet_NaN());
-    values = component_array<R>(columns, cells, std::numeric_limits<R>::quiet_NaN());
+    time = component_array<R>(1, cells);
+    values = component_array<R>(columns, cells);
 }
 template <class R>
 double sample_data<R>::bytes_for(const sample_options& o, std::int64_t size) {

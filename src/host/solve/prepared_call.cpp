@@ -39,7 +39,7 @@ void add_memory_of_call(memory_need& need, const model_shape& shape, std::int64_
 
 template <class R>
 prepared_call<R>::prepared_call(ensemble_data<R>& data, sample_data<R>& samples, record_data<R>& records,
-                                const options& o, const call_facts& facts)
+                                const options& o, const call_facts& facts, new_samples are)
     : data_(data) {
     records = record_data<R>(*data.shape, affordable(data, samples, o, facts).record, o.phases, data.size);
     arguments.model = data.shape;
@@ -53,7 +53,7 @@ prepared_call<R>::prepared_call(ensemble_data<R>& data, sample_data<R>& samples,
     fill_domain();
     arguments.shared = {data.shared.data(), data.shared_integer.data()};
     fill_records(records);
-    fill_samples(o.samples, samples);
+    fill_samples(o.samples, samples, are);
 }
 
 template <class R>
@@ -122,11 +122,14 @@ void prepared_call<R>::fill_records(record_data<R>& from) {
 }
 
 template <class R>
-void prepared_call<R>::fill_samples(const sample_options& o, sample_data<R>& samples) {
+void prepared_call<R>::fill_samples(const sample_options& o, sample_data<R>& samples, new_samples are) {
     std::int16_t* const columns = array<std::int16_t>(arguments.offsets().sample_column);
     put_columns(columns, {}, arguments.model->n_state);
     if (o.empty()) return;
-    if (samples.capacity == 0) samples = sample_data<R>(arguments.model->n_state, o, data_.size);
+    if (samples.capacity == 0) {
+        samples = sample_data<R>(arguments.model->n_state, o, data_.size);
+        if (are == new_samples::cleared) samples.clear();
+    }
     if (data_.pinned()) samples.pin(data_.pinned_for);
     require(o.capacity == samples.capacity && o.states == samples.chosen, named_option("samples"),
             " has other states or another capacity (", o.capacity, ") than the existing samples (",

@@ -136,7 +136,7 @@ ensemble_data<R>& solve_call<R>::checked(const device& where, const options& o, 
 
 template <class R>
 solve_call<R>::solve_call(const device& where, const options& o, const called_model<R>& model, ensemble_data<R>& data,
-                          sample_data<R>& samples, record_data<R>& records)
+                          sample_data<R>& samples, record_data<R>& records, new_samples are)
     : where_(where), options_(o), model_(model), data_(data), claim_(data.take()),
       left_(model.check_uses(checked(where, o, model, data), o, data.size)),
       check_(model.values_of(data, o, data.size)) {
@@ -144,7 +144,7 @@ solve_call<R>::solve_call(const device& where, const options& o, const called_mo
     // On a GPU the data of large ensembles are checked chunk by chunk, while the GPU works on others.
     if (where.which() == device::kind::cpu || data.size <= worth_chunks) check_.run();
     data.expect_phases(o.phases);
-    prepared_ = std::make_shared<prepared_call<R>>(data, samples, records, o, model.facts);
+    prepared_ = std::make_shared<prepared_call<R>>(data, samples, records, o, model.facts, are);
 }
 
 template <class R>

@@ -20,6 +20,8 @@ class component_array {
 public:
     component_array() = default;
     component_array(int components, std::int64_t size, T value);
+    /// The same with values that are not set, and pages that the system has not given yet.
+    component_array(int components, std::int64_t size);
     component_array(component_array&&) noexcept = default;
     component_array& operator=(component_array&&) noexcept = default;
 

@@ -12,10 +12,14 @@
 
 namespace myriad::host::inline MYRIAD_ABI {
 
+/// What a call does with samples that it allocates: left unset are those that it sets before anyone looks at them.
+enum class new_samples : std::uint8_t { cleared, unset };
+
 /// `trajectory_samples` of any model.
 template <class R>
 struct sample_data {
     sample_data() = default;
+    /// Times and values are not set: `clear` does that, before a call that does not set them all.
     sample_data(int n_state, const sample_options& o, std::int64_t of_instances);
     /// The memory they take for an ensemble of that size.
     static double bytes_for(const sample_options& o, std::int64_t size);

@@ -29,7 +29,9 @@ public:
 
     /// Made by `solve` and `solver`, for `size` instances.
     trajectory_samples() = default;
-    trajectory_samples(const sample_options& o, std::int64_t size) : data_(detail::n_state<Model>, o, size) {}
+    trajectory_samples(const sample_options& o, std::int64_t size) : data_(detail::n_state<Model>, o, size) {
+        data_.clear();
+    }
 
     /// The largest number of samples per instance.
     std::int64_t capacity() const { return data_.capacity; }

@@ -33,7 +33,7 @@ public:
     /// Allocates the arrays that the call needs, the samples and the records. Throws `error` if there is not enough
     /// memory.
     prepared_call(ensemble_data<R>& data, sample_data<R>& samples, record_data<R>& records, const options& o,
-                  const call_facts& facts);
+                  const call_facts& facts, new_samples are = new_samples::cleared);
     prepared_call(const prepared_call&) = delete;
     prepared_call& operator=(const prepared_call&) = delete;
 
@@ -52,7 +52,7 @@ public:
 private:
     void fill_options(const options& o, const call_facts& facts);
     void fill_records(record_data<R>& records);
-    void fill_samples(const sample_options& o, sample_data<R>& samples);
+    void fill_samples(const sample_options& o, sample_data<R>& samples, new_samples are);
 
     ensemble_data<R>& data_;
     std::vector<double> arrays_;  // doubles, for their alignment

@@ -70,7 +70,7 @@ public:
     /// Takes the ensemble for this call, checks all that can be checked before the integration, and prepares it. Throws
     /// `error`. All arguments must outlive the call.
     solve_call(const device& where, const options& o, const called_model<R>& model, ensemble_data<R>& data,
-               sample_data<R>& samples, record_data<R>& records);
+               sample_data<R>& samples, record_data<R>& records, new_samples are = new_samples::cleared);
 
     /// Integrates on the device, and reports. Throws `error` if an input is invalid, and what the progress function
     /// throws.
