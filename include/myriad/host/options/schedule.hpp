@@ -12,10 +12,10 @@ namespace myriad {
 /// are counted; the other phases after sorting by that count, so that neighbouring instances in a warp have similar
 /// costs (a solver sorts by the last call's counts as long as the instances stay on the GPU). `automatic`: on the CPU
 /// dynamic; on a GPU by_cost if there is step-size control, events or after_step, at least four phases, and more
-/// instances than one for each thread of a warp on every warp scheduler, otherwise dynamic if steps lie in shared memory
-/// and more instances wait than run at the same time, else in_order. Kernels with fixed steps and without events and
-/// after_step always run in order on a GPU. With by_cost on the CPU, no instance is done before all have completed their
-/// first phase.
+/// instances than one for each thread of a warp on every warp scheduler, otherwise dynamic if steps lie in shared
+/// memory and more instances wait than run at the same time, else in_order. Kernels with fixed steps and without events
+/// and after_step always run in order on a GPU. With by_cost on the CPU, no instance is done before all have completed
+/// their first phase.
 enum class schedule : std::uint8_t {
     automatic,  ///< chosen by device, model and number of instances
     in_order,   ///< by index, fixed beforehand

@@ -113,8 +113,8 @@ MYRIAD_FUNCTION Memory& step_memory_of_thread() {
 #endif
 }
 template <class Method, class Model, class R>
-using memory_of_rosenbrock_step = std::conditional_t<shares_factors<Method, Model, R>, step_memory<Method, Model, R>,
-                                                     stage_memory<Method, Model, R>>;
+using memory_of_rosenbrock_step =
+    std::conditional_t<shares_factors<Method, Model, R>, step_memory<Method, Model, R>, stage_memory<Method, Model, R>>;
 /// The stages and the new state of the step that this thread has taken last, if they lie there.
 template <class Method, class Model, class R>
 MYRIAD_FUNCTION const stage_memory<Method, Model, R>& stages_of_thread() {
@@ -196,8 +196,8 @@ private:
     memory& memory_;
 };
 template <class Method, class Model, class R>
-using step_storage = std::conditional_t<shares_stages<Method, Model, R>, shared_step<Method, Model, R>,
-                                        own_step<Method, Model, R>>;
+using step_storage =
+    std::conditional_t<shares_stages<Method, Model, R>, shared_step<Method, Model, R>, own_step<Method, Model, R>>;
 #else
 template <class Method, class Model, class R>
 using step_storage = own_step<Method, Model, R>;
