@@ -603,14 +603,13 @@ with concurrent.futures.ThreadPoolExecutor(4) as threads:
 
 def test_samples_that_stay_on_a_gpu_take_no_memory_of_the_host(run):
     run("""
-import resource
 size, samples = 2000, 2000
-def peak():
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+def memory():  # that the process has, in bytes
+    return int(pathlib.Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
 solve("cuda", size, samples=10)
-before = peak()
+before = memory()
 all = solve("cuda", size, samples=samples)
-taken, bytes_of_samples = peak() - before, size * samples * 8 * 3
-assert bytes_of_samples < taken < 1.5 * bytes_of_samples, (taken, bytes_of_samples)  # the simulated GPU's own
+taken, bytes_of_samples = memory() - before, size * samples * 8 * 3
+assert 0.5 * bytes_of_samples < taken < 1.5 * bytes_of_samples, (taken, bytes_of_samples)  # the simulated GPU's own
 assert np.isfinite(all["x"]).all() and np.array_equal(all["x"], on_host(all.device["x"]))
 """, MYRIAD_SIMULATED_MEGABYTES=4096)
