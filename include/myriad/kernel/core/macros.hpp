@@ -36,8 +36,8 @@
 /// The same up to another number of iterations, a constant expression.
 #define MYRIAD_UNROLL_UP_TO(count) MYRIAD_PRAGMA(unroll(count))
 #define MYRIAD_PRAGMA(text) _Pragma(#text)
-/// In device code, unrolls the following long loop by a constant expression: over steps, in which constants are reloaded
-/// in every iteration, or over values that are loaded from memory, so that they are under way together.
+/// In device code, unrolls the following long loop by a constant expression: over steps, in which constants are
+/// reloaded in every iteration, or over values in memory, whose loads are then under way together.
 #define MYRIAD_UNROLL_BY(count) MYRIAD_PRAGMA(unroll(count))
 /// Keeps device code from unrolling the following loop.
 #define MYRIAD_ROLLED _Pragma("unroll 1")
