@@ -64,8 +64,8 @@ public:
     study_kernels study() const { return kernels_.study(); }
     /// Number of instances that gives every warp scheduler of the GPU one warp.
     std::int64_t least_instances() const { return std::int64_t{128} * multiprocessors_ / traits().team; }
-    /// Whether so many instances have to wait for threads with steps in shared memory, which few threads fill, and whose
-    /// steps take long.
+    /// Whether so many instances have to wait for threads with steps in shared memory, which few threads fill, and
+    /// whose steps take long.
     bool makes_wait(std::int64_t size) const {
         return keeps_steps_in_shared_memory() && traits().team == 1 &&
                size > std::int64_t{blocks_at_once(chosen_block_)} * chosen_block_;
