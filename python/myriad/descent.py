@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .least_squares import LeastSquares, from_logarithms, logarithms
+from .least_squares import Objective, from_logarithms, logarithms
 
 if TYPE_CHECKING:
     from .hints import Array
@@ -24,37 +24,37 @@ class Descent:
     Arrays have a row for each start: of `varied`, which are the values or logarithms that vary, and of the columns that
     `pinned` gives, one for each start, which keep their values."""
 
-    def __init__(self, problem: LeastSquares, varied: Array, tolerance: float, pinned: Array | None = None) -> None:
+    def __init__(self, problem: Objective, varied: Array, tolerance: float, pinned: Array | None = None) -> None:
         self.problem, self.tolerance = problem, tolerance
         self.least, self.most = (np.tile(logarithms(problem.free, end), (len(varied), 1)) for end in problem.bounds)
         self.varied = np.clip(varied, self.least, self.most)
         if pinned is not None:
             place = np.arange(len(varied)), pinned
             self.least[place] = self.most[place] = self.varied[place]
-        self.loss, self.normal, self.gradient = self._evaluate(self.varied)
+        #: the loss, J^T J, J^T r and half the sum of squares of r, which is the loss if that is of least squares
+        self.loss, self.normal, self.gradient, self.squares = self._evaluate(self.varied)
         count = len(varied)
         self.state = np.where(np.isfinite(self.loss), _running, _failed)
         self.damping, self.growth = np.full(count, 1e-3), np.full(count, 2.0)
         self.scale = np.zeros(varied.shape)
         self.iterations = np.zeros(count, int)
 
-    def derivatives(self, varied: Array) -> tuple[Array, Array]:
-        """Residuals, and their derivatives by what varies, at points in rows."""
+    def derivatives(self, varied: Array) -> tuple[Array, Array, Array]:
+        """The loss, residuals, and their derivatives by what varies, at points in rows."""
         values = from_logarithms(self.problem.free, varied)
-        residuals, jacobian = self.problem.evaluate(values)
+        loss, residuals, jacobian = self.problem.evaluate(values)
         inner = np.stack([values[:, i] if f.log else np.ones(len(values))
                           for i, f in enumerate(self.problem.free)], axis=1)
         jacobian *= inner[:, None, :]
-        return residuals, jacobian
+        return loss, residuals, jacobian
 
-    def _evaluate(self, varied: Array) -> tuple[Array, Array, Array]:
-        """The loss, infinite where there is none, J^T J and the gradient J^T r at points in rows."""
-        residuals, jacobian = self.derivatives(varied)
+    def _evaluate(self, varied: Array) -> tuple[Array, Array, Array, Array]:
+        """The loss, infinite where there is none, J^T J, the gradient J^T r and r^T r / 2 at points in rows."""
+        loss, residuals, jacobian = self.derivatives(varied)
         transposed = jacobian.transpose(0, 2, 1)
         with np.errstate(over="ignore", invalid="ignore"):
-            loss = 0.5 * np.sum(residuals * residuals, axis=1)
             return np.where(np.isfinite(loss), loss, np.inf), transposed @ jacobian, \
-                (transposed @ residuals[..., None])[..., 0]
+                (transposed @ residuals[..., None])[..., 0], 0.5 * np.sum(residuals * residuals, axis=1)
 
     def run(self, iterations: int) -> Descent:
         """Iterates until no start goes on, or so many times."""
@@ -69,14 +69,14 @@ class Descent:
         on = np.flatnonzero(self.state == _running)
         if not on.size:
             return False
-        u, loss, normal, gradient = self.varied[on], self.loss[on], self.normal[on], self.gradient[on]
+        u, squares, normal, gradient = self.varied[on], self.squares[on], self.normal[on], self.gradient[on]
         least, most = self.least[on], self.most[on]
         diagonal = np.einsum("spp->sp", normal)
         self.scale[on] = np.maximum(self.scale[on], diagonal)
         scale = np.where(self.scale[on] > 0, self.scale[on], 1.0)
         rests = ((u <= least) & (gradient >= 0)) | ((u >= most) & (gradient <= 0)) | (diagonal == 0)
         # the cosine of the angle between the residuals and each column
-        size = np.sqrt(diagonal * (2 * loss)[:, None])
+        size = np.sqrt(diagonal * (2 * squares)[:, None])
         slant = np.where(rests | (size == 0), 0.0, np.abs(gradient) / np.where(size == 0, 1.0, size))
         flat = slant.max(axis=1) <= 1e-9
         moves = ~rests
@@ -96,7 +96,7 @@ class Descent:
 
     def _take(self, on: Array, to: Array, predicted: Array) -> None:
         """Tries the steps, and takes those that lessen the loss."""
-        (new, normal, gradient), old = self._evaluate(to), self.loss[on]
+        (new, normal, gradient, squares), old, size = self._evaluate(to), self.loss[on], self.squares[on]
         self.iterations[on] += 1
         with np.errstate(divide="ignore", invalid="ignore"):
             ratio = (old - new) / predicted
@@ -104,12 +104,13 @@ class Descent:
         taken = on[better]
         self.varied[taken], self.loss[taken] = to[better], new[better]
         self.normal[taken], self.gradient[taken] = normal[better], gradient[better]
+        self.squares[taken] = squares[better]
         factor = np.maximum(1 / 3, 1 - (2 * np.clip(ratio[better], 0, 1) - 1) ** 3)
         self.damping[taken] = np.maximum(self.damping[taken] * factor, 1e-15)
         self.growth[taken] = 2
         refused = on[~better]
         self.damping[refused] *= self.growth[refused]
         self.growth[refused] *= 2
-        done = better & (old - new <= self.tolerance * old) & (predicted <= self.tolerance * old)
+        done = better & (old - new <= self.tolerance * size) & (predicted <= self.tolerance * size)
         self.state[on[done]] = _converged
         self.state[on[self.damping[on] > _largest_damping]] = _converged  # no shorter step lessens the loss

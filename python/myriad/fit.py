@@ -16,7 +16,7 @@ from .designs import hypercube
 from .errors import Error
 from .expression import Node
 from .inputs import whole
-from .least_squares import LeastSquares, from_logarithms, logarithms
+from .least_squares import LeastSquares, Objective, from_logarithms, logarithms
 from .profile import Profile
 from .student import student_quantile
 
@@ -33,8 +33,8 @@ class Fit:
     """The outcome of `fit`. Arrays have one value for each start, in the order of the starts; what has no start is of
     the best one."""
 
-    def __init__(self, problem: LeastSquares, descent: Descent, starts: Array, iterations: int) -> None:
-        self.problem = problem  #: its `LeastSquares`
+    def __init__(self, problem: Objective, descent: Descent, starts: Array, iterations: int) -> None:
+        self.problem = problem  #: its `LeastSquares`, or another `Objective`
         values = from_logarithms(problem.free, descent.varied)
         self.loss: Array = descent.loss  #: half the sum of squares of (model - data) / sigma; infinite: no solution
         #: "converged", "iterations" if there were too few, "failed"
@@ -47,7 +47,7 @@ class Fit:
             raise Error("no start of the fit has a solution up to the last time of the data: look at one by "
                         "my.least_squares(...).run(values).report, and give narrower bounds")
         self.best = {name: float(of[self.index]) for name, of in self.values.items()}  #: the best values, by name
-        residuals, jacobian = descent.derivatives(descent.varied[[self.index]])
+        _, residuals, jacobian = descent.derivatives(descent.varied[[self.index]])
         self.residuals: Array = residuals[0]  #: in the order of `problem.labels`
         self._jacobian: Array = jacobian[0]
         self._limits = iterations, descent.tolerance
@@ -165,8 +165,9 @@ class Fit:
 
     def __str__(self) -> str:
         intervals = self.confidence()
-        near = int(np.sum(self.loss <= self.loss[self.index] * (1 + 1e-3) + 1e-12))
-        lines = [f"loss {self.loss[self.index]:.6g}, reached by {near} of {len(self.loss)} starts"]
+        least, size = self.loss[self.index], 0.5 * float(self.residuals @ self.residuals)
+        near = int(np.sum(self.loss <= least + 1e-3 * size + 1e-12))
+        lines = [f"loss {least:.6g}, reached by {near} of {len(self.loss)} starts"]
         width = max(map(len, self.problem.names))
         lines += [f"{name:{width}}  {self.best[name]:.6g}  [{low:.6g}, {high:.6g}]"
                   for name, (low, high) in intervals.items()]
@@ -175,7 +176,7 @@ class Fit:
     __repr__ = __str__
 
 
-def _by_name(problem: LeastSquares, values: Array) -> dict[str, Any]:
+def _by_name(problem: Objective, values: Array) -> dict[str, Any]:
     return {name: values[..., i] for i, name in enumerate(problem.names)}
 
 
@@ -201,6 +202,11 @@ def fit(model: AnyModel, data: Any, *, free: ByComponent, starts: int | ByCompon
     Further arguments are those of `solve`: method, rtol, atol, device ... All starts are integrated as one ensemble,
     with sensitivities, in every iteration."""
     problem = LeastSquares(model, data, free, sweep, start, begin, sigma, options)
+    return minimised(problem, starts, iterations, tolerance, seed)
+
+
+def minimised(problem: Objective, starts: int | ByComponent, iterations: int, tolerance: float, seed: int) -> Fit:
+    """The fit of a problem; arguments as of `fit`."""
     if isinstance(starts, Mapping):
         given = by_component(starts, "starts=")
         missing = [name for name in problem.names if name not in given]

@@ -45,7 +45,57 @@ class Free:
                         "one, or leave out \"log\"")
 
 
-class LeastSquares:
+class Objective:
+    """What a fit minimises, as a function of the values of the free components, in the order of `names`: one set, or
+    several in rows, which are integrated as one ensemble."""
+
+    has_sigma = True  #: whether the deviations of the data are known, or part of what is minimised
+
+    def __init__(self, free: Sequence[Free]) -> None:
+        self.free = list(free)
+        self.names = [f.name for f in self.free]  #: of the free components
+        self._last: tuple[Any, ...] = ()
+
+    @property
+    def bounds(self) -> tuple[Array, Array]:
+        """The lower and the upper bounds of the free components."""
+        return np.array([f.least for f in self.free]), np.array([f.most for f in self.free])
+
+    def run(self, values: Values, sensitivities: bool = True) -> Run:
+        """The run of one set of values, or of several in rows."""
+        raise NotImplementedError
+
+    def evaluate(self, values: Values) -> tuple[Array, Array, Array]:
+        """Of sets in rows the loss, and residuals r, [set, residual], and a matrix J, [set, residual, free component]:
+        J^T r is the gradient of the loss, and J^T J approximates its second derivatives. NaN where the model has no
+        solution up to a time of the data."""
+        raise NotImplementedError
+
+    def _sets(self, values: Values) -> Array:
+        sets = np.asarray(values, float)
+        if sets.ndim not in (1, 2) or sets.shape[-1] != len(self.free):
+            raise Error(f"the values of free components have the shape {sets.shape}: give {len(self.free)}, or rows of "
+                        f"{len(self.free)}, in the order {', '.join(self.names)}")
+        return sets
+
+    def _once(self, values: Values, which: int) -> Array:
+        """A part of what `evaluate` returns, once for all parts at the same values; of one set, if one is given."""
+        sets = self._sets(values)
+        if not self._last or not np.array_equal(self._last[0], sets):
+            self._last = (sets.copy(), *self.evaluate(np.atleast_2d(sets)))
+        found: Array = self._last[1 + which]
+        return (found[0] if sets.ndim == 1 else found).copy()
+
+    def loss(self, values: Values) -> Any:
+        """What is minimised: a number, or one for each set."""
+        return self._once(values, 0)
+
+    def gradient(self, values: Values) -> Array:
+        """The derivatives of the loss by the free components."""
+        return np.einsum("...r,...rp->...p", self._once(values, 1), self._once(values, 2))
+
+
+class LeastSquares(Objective):
     """The residuals (model - data) / sigma of a model and data, for `my.fit` and for other optimisers, as in
     `scipy.optimize.least_squares(problem.residuals, start, problem.jacobian, bounds=problem.bounds)`. Arguments are
     the values of the free components in the order of `names`, of one set, or of several in rows, which are integrated
@@ -55,9 +105,8 @@ class LeastSquares:
                  start: ByComponent | None, begin: float, sigma: Any, options: Mapping[str, Any]) -> None:
         self.model = model
         self._components = components = Components(model)
-        self.free = [Free(components.component(name), bounds) for name, bounds in by_component(
-            by_name(free, "free", "free={k: (0.1, 10, \"log\")}"), "free=").items()]
-        self.names = [f.name for f in self.free]  #: of the free components
+        super().__init__([Free(components.component(name), bounds) for name, bounds in by_component(
+            by_name(free, "free", "free={k: (0.1, 10, \"log\")}"), "free=").items()])
         if not self.free:
             raise Error("free= names no component: give those to fit with their bounds, as in free={k: (0.1, 10)}")
         possible = components.of(("state", "parameter"))
@@ -83,7 +132,6 @@ class LeastSquares:
         self._options = {**options, "atol": self._tolerances(options)}
         self._begin = real(begin, "begin")
         self._read(data, sigma)
-        self._last: tuple[Any, ...] = ()
 
     def _tolerances(self, options: Mapping[str, Any]) -> dict[str, float]:
         """Absolute tolerances of states, and of their derivatives, whose product with a free component is to be as
@@ -160,18 +208,6 @@ class LeastSquares:
         self._sigma = np.concatenate(deviations)
         self._observed = np.concatenate([columns[name][there] for name, there in self._there.items()])
 
-    @property
-    def bounds(self) -> tuple[Array, Array]:
-        """The lower and the upper bounds of the free components."""
-        return np.array([f.least for f in self.free]), np.array([f.most for f in self.free])
-
-    def _sets(self, values: Values) -> Array:
-        sets = np.asarray(values, float)
-        if sets.ndim not in (1, 2) or sets.shape[-1] != len(self.free):
-            raise Error(f"the values of free components have the shape {sets.shape}: give {len(self.free)}, or rows of "
-                        f"{len(self.free)}, in the order {', '.join(self.names)}")
-        return sets
-
     def run(self, values: Values, sensitivities: bool = True) -> Run:
         """The run of one set of values, or of several in rows."""
         sets = np.atleast_2d(self._sets(values))
@@ -188,9 +224,9 @@ class LeastSquares:
                      start={**self._start, **initial}, time=(self._begin, float(self.times[-1])), samples=samples,
                      sensitivities=self.names if sensitivities else None, **options)
 
-    def evaluate(self, values: Values) -> tuple[Array, Array]:
-        """Residuals and their derivatives of sets in rows, [set, residual] and [set, residual, free component]. NaN
-        where the model has no solution up to a time of the data."""
+    def evaluate(self, values: Values) -> tuple[Array, Array, Array]:
+        """Of sets in rows the loss, residuals, [set, residual], and their derivatives by the free components, one more
+        axis. NaN where the model has no solution up to a time of the data."""
         run = self.run(values)
         ended = run.status > status_names.index("success")
         residuals = np.concatenate([run[n][:, w] for n, w in self._where.items()], axis=1)
@@ -199,32 +235,16 @@ class LeastSquares:
         jacobian /= self._sigma[:, None]
         lost = ended & ~np.isfinite(residuals).all(axis=1)
         residuals[lost] = jacobian[lost] = np.nan
-        return residuals, jacobian
-
-    def _once(self, values: Values) -> tuple[Array, Array]:
-        """`evaluate`, once for residuals and derivatives of the same values."""
-        sets = self._sets(values)
-        if not self._last or not np.array_equal(self._last[0], sets):
-            self._last = (sets.copy(), *self.evaluate(sets))
-        return self._last[1], self._last[2]
+        with np.errstate(over="ignore", invalid="ignore"):
+            return 0.5 * np.sum(residuals * residuals, axis=1), residuals, jacobian
 
     def residuals(self, values: Values) -> Array:
-        """The residuals of one set of values, or rows of those of several."""
-        found = self._once(values)[0]
-        return found[0].copy() if np.ndim(values) == 1 else found.copy()
+        """The residuals of one set of values, or rows of those of several; half the sum of squares is the loss."""
+        return self._once(values, 1)
 
     def jacobian(self, values: Values) -> Array:
         """The derivatives of the residuals by the free components, one row for each residual."""
-        found = self._once(values)[1]
-        return found[0].copy() if np.ndim(values) == 1 else found.copy()
-
-    def loss(self, values: Values) -> Any:
-        """Half the sum of the squares of the residuals: a number, or one for each set."""
-        return 0.5 * np.sum(np.square(self.residuals(values)), axis=-1)
-
-    def gradient(self, values: Values) -> Array:
-        """The derivatives of the loss by the free components."""
-        return np.einsum("...r,...rp->...p", self.residuals(values), self.jacobian(values))
+        return self._once(values, 2)
 
 
 def least_squares(model: AnyModel, data: Any, *, free: ByComponent, sweep: ByComponent | None = None,

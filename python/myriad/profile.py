@@ -117,7 +117,7 @@ class Profile:
                 return
             loss = self._problem.loss(from_logarithms(self._problem.free, rows))
             found = np.concatenate([np.tile(s.loss[1:], 2) for s in sides])
-            better = np.split(np.isfinite(loss) & ~(loss >= found * (1 - 1e-6)),
+            better = np.split(np.isfinite(loss) & ~(loss >= found - 1e-6 * np.abs(found)),
                               np.cumsum([len(s) for s in starts])[:-1])
             if not any(b.any() for b in better):
                 return

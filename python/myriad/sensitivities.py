@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from . import folding
 from .components import Components, by_component, unknown
 from .core_options import per_state
 from .derivatives import derivatives
@@ -127,14 +128,31 @@ class WithSensitivities(Extended):
         of_derivatives.update((c, real(t, f"{name} of '{c}'")) for c, t in named.items() if c in of_derivatives)
         return [*of_states, *(t if self.control else _not_controlled for t in of_derivatives.values())]
 
-    def check_start(self, components: Components, given: Collection[str]) -> None:
-        """Refuses initial values that follow from components that there are derivatives by."""
-        for name in Components(self.model).of(("state", "accessory")):
-            if name in self.by and name not in given:
-                continue
-            if components.follows(name, self.by, given):
-                raise Error(f"the initial value of '{name}' follows from components that sensitivities are by: give it "
-                            "in start=")
+    def start_derivatives(self, given: Collection[str]) -> dict[str, Any]:
+        """The derivatives of initial values that follow from components that sensitivities are by, as defaults of the
+        derivatives at the start; refuses parameters that follow from them."""
+        own = Components(self.model)
+        for name in own.of(("parameter", "shared")):
+            if name not in self.by and own.follows(name, self.by, given):
+                raise Error(f"the value of '{name}' follows from components that sensitivities are by: give it in the "
+                            "sweep")
+        found: dict[str, Any] = {}
+
+        def derivative(name: str, k: str) -> Any:
+            if name in given or name in self.by or not own.follows(name, [k], given):
+                return folding.constant(float(name == k))
+            default = own.defaults[name]
+            symbols = [s for s in symbols_of([default]) if s is not time]
+            partials = derivatives([default], symbols)
+            if partials is None:
+                raise Error(f"the initial value of '{name}' looks up a table and has no derivatives: give it in start=")
+            return folding.total([folding.multiply(folding.number(partial), derivative(symbols[i].value[1], k))
+                                  for i, partial in partials[0].items()])
+
+        for name in own.of(("state", "accessory")):
+            if name not in given and name not in self.by:
+                found |= {f"{name}_by_{k}": derivative(name, k) for k in self.by if own.follows(name, [k], given)}
+        return found
 
 
 class Sensitivities(Mapping[Any, Any]):

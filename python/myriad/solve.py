@@ -276,9 +276,10 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
         model = with_sensitivities(model.model, model.by, control=False)
     model = prepared(model) if sensitivities is None else with_sensitivities(model, sensitivities, sensitivity_control)
     components = Components(model)
+    if isinstance(model, WithSensitivities):
+        components.defaults = {**components.defaults, **model.start_derivatives(_names_given(components, sweep, start))}
     given, domain, count = _gather(components, sweep, start, time, size)
     if isinstance(model, WithSensitivities):
-        model.check_start(components, _names_given(components, sweep, start))
         given_options = model.options(given_options, components)
     samples = given_options.samples is not None
     method_type(chosen, control, samples)  # refuses what does not exist

@@ -153,3 +153,25 @@ def test_an_output_by_a_parameter_that_it_has_as_a_factor_has_its_derivatives_at
     np.testing.assert_allclose(run.sensitivity["seen", "k"], -2 * scales[:, None] * times * decay, rtol=1e-8)
     both = my.solve(model, sweep, samples={"times": times, "states": ["A"]}, **call)  # C at the end alone
     np.testing.assert_allclose(both.sensitivity["both", "k"], -4 * scales * np.exp(-2 * rates - 0.2), rtol=1e-8)
+
+
+def test_initial_values_that_follow_from_a_parameter_have_its_derivative():
+    pytest.importorskip("libsbml")
+    import sbml_models as sbml
+
+    model = my.read_sbml(sbml.document([
+        sbml.compartment("c"), sbml.species("A", concentration=1.0), sbml.species("C", concentration=1.0),
+        sbml.parameter("k", 0.5), sbml.parameter("b", 9.0), sbml.initially("A", "k^2 + C"),
+        sbml.initially("C", "3 * k"), sbml.initially("b", "k / 2"), sbml.reaction("loss", "A ->", "k * A * c"),
+        sbml.reaction("other", "C ->", "b * C * c")]))
+    call = {"time": (0, 2), "sensitivities": ["k"], **tight}
+    rates = np.array([0.5, 0.7])
+    run = my.solve(model, {"k": rates, "b": 0.1}, **call)
+    decay = np.exp(-2 * rates)
+    np.testing.assert_allclose(run.sensitivity["A", "k"], (2 * rates + 3 - 2 * (rates**2 + 3 * rates)) * decay,
+                               rtol=1e-8)
+    np.testing.assert_allclose(run.sensitivity["C", "k"], 3 * np.exp(-0.2), rtol=1e-8)
+    given = my.solve(model, {"k": rates, "b": 0.1}, start={"C": 1.0}, **call)  # then A begins at k^2 + 1
+    np.testing.assert_allclose(given.sensitivity["A", "k"], (2 * rates - 2 * (rates**2 + 1)) * decay, rtol=1e-8)
+    with pytest.raises(my.Error, match="the value of 'b' follows from components that sensitivities are by"):
+        my.solve(model, {"k": rates}, **call)

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "myriad/kernel/model/mass_matrix.hpp"
+#include "myriad/kernel/model/moving_summaries.hpp"
 #include "myriad/kernel/model/variations.hpp"
 
 namespace myriad::detail {
@@ -69,6 +70,50 @@ struct component_directions {
     }
 };
 
+/// A model that observes also observes the derivatives of its quantities, which are kept beside its summaries.
+template <class Model, class Directions>
+struct observing : with_variations<Model, Directions> {};
+template <class Model, class Directions>
+requires has_summaries<Model>
+struct observing<Model, Directions> : with_variations<Model, Directions> {
+private:
+    static constexpr int n = detail::n_state<Model>, n_own_observed = detail::n_observed<Model>,
+                         count = Directions::count;
+
+public:
+    static constexpr int n_observed =
+        n_own_observed * (1 + count);  ///< the quantities, their derivatives in each direction
+    static constexpr int n_companion = detail::n_summary<Model> * count;  ///< the derivatives of summaries
+    /// The derivative of summary i / count in direction i % count.
+    template <int i>
+    static constexpr companion companion_at = {
+        n_own_observed * (1 + i % count) + summary_at<Model, i / count>.quantity,
+        summary_at<Model, i / count>.quantity,
+        summary_at<Model, i / count>.kind,
+        (1 + i % count) * detail::n_accessory<Model> + summary_at<Model, i / count>.accessory,
+        sensitivity_places<Model, count>::event_time,
+        sensitivity_places<Model, count>::time + i % count};
+
+    template <class R>
+    MYRIAD_FUNCTION static vec<R, n_observed> observe(auto t, const auto& y, const auto& p) {
+        using number = moving_number<Directions, R>;
+        vec<number, n> moving;
+        static_for<0, n>([&](auto c) MYRIAD_LAMBDA {
+            moving[c] = number(
+                y[c], partials<R, count>::each([&](auto d) MYRIAD_LAMBDA { return partial<R>(y[n * (1 + d) + c]); }));
+        });
+        const vec<number, n_own_observed> q =
+            Model::template observe<number>(t, moving, detail::inputs_along_all<Model, Directions, R>(p));
+        vec<R, n_observed> all;
+        static_for<0, n_own_observed>([&](auto k) MYRIAD_LAMBDA {
+            all[k] = q[k].value;
+            static_for<0, count>(
+                [&](auto d) MYRIAD_LAMBDA { all[n_own_observed * (1 + d) + k] = q[k].derivative.in[d].value; });
+        });
+        return all;
+    }
+};
+
 }  // namespace myriad::detail
 
 namespace myriad {
@@ -84,12 +129,12 @@ namespace myriad {
 ///
 /// What a derivative at an event needs and does not exist, as where the solution only touches the surface, makes the
 /// derivative of an accessory NaN and ends the instance as `not_finite` where it is one of a state; `undefined` counts
-/// such events. The accessories that summaries write have NaN as derivative.
+/// such events. Maxima, minima and integrals over the phase have derivatives too, the times of extrema NaN.
 ///
 /// Model's functions, hooks included, are called with dual numbers: their variables must be `auto` or R, the functions
 /// they call those of `myriad`. `rhs` may jump only at an event with `after_event`.
 template <class Model, auto... wrt>
-struct with_sensitivities : detail::with_variations<Model, detail::component_directions<Model, wrt...>> {
+struct with_sensitivities : detail::observing<Model, detail::component_directions<Model, wrt...>> {
     static_assert(sizeof...(wrt) > 0,
                   "with_sensitivities needs at least one component: "
                   "with_sensitivities<model, model::k>");
@@ -103,7 +148,7 @@ struct with_sensitivities : detail::with_variations<Model, detail::component_dir
 
     /// What it has derivatives by.
     using directions = detail::component_directions<Model, wrt...>;
-    using base = detail::with_variations<Model, directions>;  ///< with the equations of the derivatives
+    using base = detail::observing<Model, directions>;  ///< with the equations of the derivatives
     using base::n_original, base::n_tangent, base::n_state;
     static constexpr int n_directions = directions::count;  ///< number of components that it has derivatives by
     /// Where they lie among the accessories.
@@ -136,11 +181,12 @@ struct with_sensitivities : detail::with_variations<Model, detail::component_dir
         if constexpr (detail::has_initialise<Model>)
             v = detail::move_through<Model, directions>(wrapped, v, dt,
                                                         [](auto& own) MYRIAD_LAMBDA { Model::initialise(own); });
+        if constexpr (detail::has_summaries<Model>) moved::begin(wrapped, v, dt);
         if (continues) shift(wrapped, v, dt, R(-1));
         detail::set_part(wrapped.y, n_original, v);
         detail::set_part(wrapped.accessory, places::time, dt);
         wrapped.accessory[event_time] = wrapped.t;
-        forget_summaries(wrapped);
+        forget_times(wrapped);
     }
 
     /// The model's own hook, after which derivatives are those of the values at the end, wherever that is.
@@ -151,9 +197,10 @@ struct with_sensitivities : detail::with_variations<Model, detail::component_dir
         if (wrapped.t == wrapped.accessory[event_time] && wrapped.t != wrapped.t_end) {
             dt = detail::part<n_directions>(wrapped.accessory, places::time);
             shift(wrapped, v, dt, R(1));
+            if constexpr (detail::has_summaries<Model>) moved::extend(wrapped, dt, R(1));
             if (!detail::all_finite(dt)) wrapped.accessory[undefined] += R(1);
         }
-        forget_summaries(wrapped);
+        forget_times(wrapped);
         if constexpr (detail::has_finalise<Model>)
             v = detail::move_through<Model, directions>(wrapped, v, dt,
                                                         [](auto& own) MYRIAD_LAMBDA { Model::finalise(own); });
@@ -162,6 +209,8 @@ struct with_sensitivities : detail::with_variations<Model, detail::component_dir
     }
 
 private:
+    using moved = detail::moving_summaries<Model, directions>;
+
     /// Follows neighbouring solutions along their slope for `sign` times the time by which each is later.
     template <class R>
     MYRIAD_FUNCTION static void shift(const auto& wrapped, vec<R, n_tangent>& v, const vec<R, n_directions>& dt,
@@ -171,12 +220,8 @@ private:
             for (int c = 0; c < n_original; ++c)
                 v[i * n_original + c] = fma(sign * slope[c], dt[i], v[i * n_original + c]);
     }
-    MYRIAD_FUNCTION static void forget_summaries(auto& wrapped) {
-        using R = std::remove_cvref_t<decltype(wrapped.t)>;
-        detail::static_for<0, detail::n_summary<Model>>([&](auto r) MYRIAD_LAMBDA {
-            constexpr int into = detail::summary_at<Model, r.value>.accessory;
-            for (int i = 0; i < n_directions; ++i) wrapped.accessory[accessory_sensitivity(into, i)] = nan_of<R>;
-        });
+    MYRIAD_FUNCTION static void forget_times(auto& wrapped) {
+        for (int i = 0; i < n_directions; ++i) moved::forget(wrapped, i, false);
     }
 };
 

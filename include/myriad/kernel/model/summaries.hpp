@@ -75,6 +75,28 @@ template <class Model, int i>
 inline constexpr unmarked_summary summary_at = {Model::summaries[i].quantity, Model::summaries[i].kind,
                                                 Model::summaries[i].accessory};
 
+/// A quantity that is kept beside a summary of another: its value where the extremum is, or its integral. It begins a
+/// phase with what the model's `initialise` leaves in its accessory. Right after an event that moves with what the
+/// quantity is a derivative by, an extremum moves too.
+struct companion {
+    int quantity;
+    int beside;  ///< the quantity of the summary
+    over_phase kind;
+    int accessory;
+    int event_time;  ///< the accessory with the time of the last event
+    int moves_by;    ///< that with its derivative
+};
+template <class Model>
+constexpr int n_companion_of() {
+    if constexpr (requires { Model::n_companion; }) {
+        return Model::n_companion;
+    } else {
+        return 0;
+    }
+}
+template <class Model>
+inline constexpr int n_companion = n_companion_of<Model>();
+
 /// Whether a type tag stands for a number, or for the model's enumeration of such components.
 template <class Model>
 constexpr bool marks_observed(const char* mark) {

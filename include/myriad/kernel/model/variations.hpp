@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "myriad/kernel/core/static_for.hpp"
+#include "myriad/kernel/model/moving_summaries.hpp"
 #include "myriad/kernel/model/tangent_lane.hpp"
 #include "myriad/kernel/scalar/lanes.hpp"
 
@@ -75,6 +76,7 @@ template <class Model, class Directions>
 struct crossing_layer : after_step_layer<Model, Directions> {
 protected:
     static constexpr int n = n_state<Model>, count = Directions::count;
+    static constexpr bool moves_summaries = has_summaries<Model> && Directions::keeps_times;
 
     template <class R>
     MYRIAD_FUNCTION static vec<R, n> slope(const auto& wrapped) {
@@ -88,16 +90,21 @@ protected:
     MYRIAD_FUNCTION static bool cross(auto& wrapped, const vec<R, count>& dt, auto&& hook) {
         const vec<R, n> before = slope<R>(wrapped);
         vec<R, count * n> arriving;
+        vec<R, count> finite;
         MYRIAD_UNROLL
         for (int i = 0; i < count; ++i) {
             vec<R, n> v = part<n>(wrapped.y, n + i * n);
-            const R finite = is_finite(dt[i]) ? dt[i] : R(0);
-            for (int c = 0; c < n; ++c) v[c] = fma(before[c], finite, v[c]);
+            finite[i] = is_finite(dt[i]) ? dt[i] : R(0);
+            for (int c = 0; c < n; ++c) v[c] = fma(before[c], finite[i], v[c]);
             set_part(arriving, i * n, v);
         }
+        using summaries = moving_summaries<Model, Directions>;
+        if constexpr (moves_summaries) summaries::arrive(wrapped, arriving, finite);
         const auto left = detail::move_through<Model, Directions>(wrapped, arriving, dt, hook);
         const vec<R, n> after = slope<R>(wrapped);
+        if constexpr (moves_summaries) summaries::extend(wrapped, finite, R(-1));
         if (same_values(left, arriving) && same_values(before, after)) return true;  // exactly, without rounding
+        if constexpr (moves_summaries) summaries::lose(wrapped, dt);
         MYRIAD_UNROLL
         for (int i = 0; i < count; ++i)
             for (int c = 0; c < n; ++c) wrapped.y[n + i * n + c] = fma(-after[c], dt[i], left[i * n + c]);
@@ -162,7 +169,9 @@ struct after_stop_layer<Model, Directions> : after_event_layer<Model, Directions
                                     stop, number, detail::inputs_along<Model, Directions, i.value, R>(wrapped)))
                             .derivative;
             });
-            crossing_layer<Model, Directions>::template cross<R>(wrapped, dt, act);
+            Directions::cross_at_event(wrapped, dt, [&]() MYRIAD_LAMBDA {
+                return crossing_layer<Model, Directions>::template cross<R>(wrapped, dt, act);
+            });
         } else {
             detail::move_directions<Model, Directions>(wrapped, act);
         }

@@ -74,8 +74,8 @@ struct summariser {
         static_for<0, m>([&](auto j) MYRIAD_LAMBDA {
             constexpr int q = decltype(j)::value;
             if constexpr (extreme<q, over_phase::maximum> || extreme<q, over_phase::minimum>) {
-                consider<q>(accepted, first[q].value, step.data.t);
-                consider<q>(accepted, last[q].value, t1);
+                consider<q>(accepted, after_event(first, step.data), step.data.t);
+                consider<q>(accepted, last, t1);
                 search = search | (accepted & may_turn(first[q], last[q]));
             }
         });
@@ -154,15 +154,16 @@ private:
         }
     }
 
-    /// Updates the extrema of quantity q with a value at time t. A NaN persists.
+    /// Updates the extrema of quantity q with the quantities at time t. A NaN persists.
     template <int q>
-    MYRIAD_FUNCTION void consider(const mask& lanes, const S& value, const S& t) {
-        consider_for<q, over_phase::maximum, over_phase::time_of_maximum>(lanes, value, t);
-        consider_for<q, over_phase::minimum, over_phase::time_of_minimum>(lanes, value, t);
+    MYRIAD_FUNCTION void consider(const mask& lanes, const slopes& there, const S& t) {
+        consider_for<q, over_phase::maximum, over_phase::time_of_maximum>(lanes, there, t);
+        consider_for<q, over_phase::minimum, over_phase::time_of_minimum>(lanes, there, t);
     }
     template <int q, over_phase kind, over_phase its_time>
-    MYRIAD_FUNCTION void consider_for(const mask& lanes, const S& value, const S& t) {
+    MYRIAD_FUNCTION void consider_for(const mask& lanes, const slopes& there, const S& t) {
         if constexpr (extreme<q, kind>) {
+            const S& value = there[q].value;
             S& best = s.data.accessory[summarised_into<Model, q, kind>];
             const mask better =
                 lanes & ((kind == over_phase::maximum ? value > best : value < best) | (value != value));
@@ -171,6 +172,37 @@ private:
                 S& when = s.data.accessory[summarised_into<Model, q, its_time>];
                 when = select(better, t, when);
             }
+            each_companion<q, kind>(
+                [&](auto c, S& kept) MYRIAD_LAMBDA { kept = select(better, there[decltype(c)::value].value, kept); });
+        }
+    }
+
+    /// The quantities at the start of a step, with what moves with an event just before it.
+    MYRIAD_FUNCTION slopes after_event(const slopes& first, const step_data<Method, S, n>& step) const {
+        if constexpr (n_companion<Model> == 0) {
+            return first;
+        } else {
+            slopes moved = first;
+            static_for<0, n_companion<Model>>([&](auto i) MYRIAD_LAMBDA {
+                constexpr companion what = Model::template companion_at<decltype(i)::value>;
+                const S by = s.data.accessory[what.moves_by], slope = first[what.beside].derivative / step.h;
+                const S& value = first[what.quantity].value;
+                moved[what.quantity].value =
+                    select(step.t == s.data.accessory[what.event_time], fma(slope, by, value), value);
+            });
+            return moved;
+        }
+    }
+
+    /// Calls a function with the number of each quantity that is kept beside a summary of quantity q, and where it is.
+    template <int q, over_phase kind, class F>
+    MYRIAD_FUNCTION void each_companion(F&& function) {
+        if constexpr (n_companion<Model> != 0) {
+            static_for<0, n_companion<Model>>([&](auto i) MYRIAD_LAMBDA {
+                constexpr companion what = Model::template companion_at<decltype(i)::value>;
+                if constexpr (what.beside == q && what.kind == kind)
+                    function(constant_index<what.quantity>{}, s.data.accessory[what.accessory]);
+            });
         }
     }
 
@@ -204,13 +236,12 @@ private:
         });
     }
 
-    /// Quantity q and its slope inside the step.
-    template <int q>
-    MYRIAD_FUNCTION dual<S> look_at(const step_type& step, const S& theta) const {
+    /// The quantities and their slopes inside the step.
+    MYRIAD_FUNCTION slopes look_at(const step_type& step, const S& theta) const {
         if constexpr (is_pack<S>) {
-            return look_out_of_line(step, theta)[q];
+            return look_out_of_line(step, theta);
         } else {
-            return observe_at(step, dual<S>(theta, S(R(1))))[q];
+            return observe_at(step, dual<S>(theta, S(R(1))));
         }
     }
     __attribute__((noinline)) slopes look_out_of_line(const step_type& step, const S& theta) const {
@@ -238,7 +269,7 @@ private:
                       (slope * last.derivative <= S(R(0)));
         found.theta = select(found.there, theta, S(R(0.5)));
         found.slope = S(R(0));
-        if (any(found.there)) found.slope = look_at<q>(step, found.theta).derivative;
+        if (any(found.there)) found.slope = look_at(step, found.theta)[q].derivative;
         return found;
     }
 
@@ -258,12 +289,11 @@ private:
         if (!any(wanted)) return;
         const S small = S(R(1024) * epsilon_of<R>) * (b.f_low - b.f_high);
         const S theta = detail::find_root(b, wanted, [&](const S& x, mask& close) MYRIAD_LAMBDA {
-            const S slope = S(sign) * look_at<q>(step, x).derivative;
+            const S slope = S(sign) * look_at(step, x)[q].derivative;
             close = abs(slope) <= small;
             return slope;
         });
-        const S value = look_at<q>(step, theta).value;
-        consider<q>(wanted, value, fma(theta, step.data.h, step.data.t));
+        consider<q>(wanted, look_at(step, theta), fma(theta, step.data.h, step.data.t));
     }
 
     /// Five-point Lobatto rule, exact for polynomials up to degree seven: Abramowitz and Stegun, Handbook of
@@ -286,6 +316,9 @@ private:
             if constexpr (extreme<q, over_phase::integral>) {
                 S& integral = s.data.accessory[summarised_into<Model, q, over_phase::integral>];
                 integral = select(lanes, fma(step.data.h, sum[q], integral), integral);
+                each_companion<q, over_phase::integral>([&](auto c, S& kept) MYRIAD_LAMBDA {
+                    kept = select(lanes, fma(step.data.h, sum[decltype(c)::value], kept), kept);
+                });
             }
         });
     }

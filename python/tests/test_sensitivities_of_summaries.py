@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: MIT
+"""Derivatives of integrals and extrema over a phase, by the ends of the time domain and by thresholds, compared with
+closed forms."""
+
+import numpy as np
+import pytest
+
+import myriad as my
+
+x, v = my.states("x v")
+k, r, g = my.parameters("k r g")
+tight = {"rtol": 1e-11, "atol": 1e-11}
+peak, dip, when, area, level = (my.accessory(name) for name in ("peak", "dip", "when", "area", "level"))
+
+
+def by_differences(f, at, d=1e-3):
+    """Central differences of fourth order, relative to each component."""
+    found = []
+    for i in range(len(at)):
+        step = np.zeros(len(at))
+        step[i] = d * abs(at[i])
+        found.append((8 * (f(*(at + step)) - f(*(at - step))) - (f(*(at + 2 * step)) - f(*(at - 2 * step))))
+                     / (12 * step[i]))
+    return np.stack(found, axis=-1)
+
+
+@pytest.mark.parametrize("method", ["tsitouras_5", "rodas_5p"])
+def test_extrema_and_integrals_of_smooth_solutions_have_derivatives(method):
+    # x = x0 cos(w t) + v0 / w sin(w t), w = sqrt(k): the largest value inside, the smallest at the end.
+    spring = my.model({x: v, v: -k * x}, accessories={
+        peak: my.phase_maximum(k * x), when: my.time_of_maximum(k * x), dip: my.phase_minimum(x),
+        area: my.integral(x * x + my.time)}, name="spring_summaries")
+    at, end = np.array([2.0, 1.0, 0.5]), 1.2  # k, x0, v0
+    run = my.solve(spring, {k: at[0]}, start={x: at[1], v: at[2]}, time=(0, end), method=method,
+                   sensitivities=[k, x, v], **tight)
+    t, weight = np.polynomial.legendre.leggauss(40)
+    t, weight = end * (t + 1) / 2, end * weight / 2
+
+    def position(t, k, x0, v0):
+        return x0 * np.cos(np.sqrt(k) * t) + v0 / np.sqrt(k) * np.sin(np.sqrt(k) * t)
+
+    expected = {peak: lambda k, x0, v0: k * np.sqrt(x0**2 + v0**2 / k), dip: lambda *at: position(end, *at),
+                area: lambda *at: weight @ (position(t, *at)**2 + t)}
+    for accessory, f in expected.items():
+        np.testing.assert_allclose(run[accessory], f(*at), rtol=1e-8)
+        np.testing.assert_allclose(run.sensitivity[accessory][0], by_differences(f, at), rtol=1e-7, atol=1e-9)
+    assert np.isnan(run.sensitivity[when]).all()
+
+
+# A ball that falls from x and bounces with the restitution r.
+bounce = my.event(x, direction="falling", do={v: -r * v}, name="bounce")
+summaries = {peak: my.phase_maximum(v), dip: my.phase_minimum(v), level: my.phase_minimum(x), area: my.integral(x)}
+
+
+def test_extrema_and_integrals_that_events_cut_have_derivatives():
+    ball = my.model({x: v, v: -g}, accessories={**summaries, when: my.integral(v)}, events=bounce, name="ball_sums")
+    at, end = np.array([0.8, 9.81, 1.0]), 0.9  # r, g, x0; up in the second flight
+    run = my.solve(ball, {r: at[0], g: at[1]}, start={x: at[2], v: 0}, time=(0, end), sensitivities=[r, g, x], **tight)
+
+    def first(g, x0):
+        return np.sqrt(2 * x0 / g)
+
+    def whole(r, g, x0):
+        t1, v1 = first(g, x0), r * np.sqrt(2 * g * x0)
+        t = end - t1
+        return x0 * t1 - g * t1**3 / 6 + v1 * t**2 / 2 - g * t**3 / 6
+
+    def height(r, g, x0):
+        t = end - first(g, x0)
+        return r * np.sqrt(2 * g * x0) * t - g * t**2 / 2 - x0
+
+    expected = {peak: lambda r, g, x0: r * np.sqrt(2 * g * x0), dip: lambda r, g, x0: -np.sqrt(2 * g * x0),
+                area: whole, when: height}
+    for accessory, f in expected.items():
+        np.testing.assert_allclose(run[accessory], f(*at), rtol=1e-8)
+        np.testing.assert_allclose(run.sensitivity[accessory][0], by_differences(f, at), rtol=1e-7, atol=1e-8)
+    np.testing.assert_allclose(run.sensitivity[level][0], 0, atol=1e-8)  # at the ground, whenever that is
+    alone = my.solve(ball, {r: at[0], g: at[1]}, start={x: at[2], v: 0}, time=(0, end), **tight)
+    for accessory in expected:
+        np.testing.assert_allclose(run[accessory], alone[accessory], rtol=1e-9)
+
+
+def test_summaries_of_phases_that_events_begin_and_end_have_derivatives():
+    ball = my.model({x: v, v: -g}, accessories={**summaries, when: my.phase_maximum(x)},
+                    events=my.event(x, direction="falling", do={v: -r * v, my.end_phase: True}), name="ball_phases")
+    at = np.array([0.8, 9.81, 1.0])
+    run = my.solve(ball, {r: at[0], g: at[1]}, start={x: at[2], v: 0}, time=(0, 10), phases=2, carry_on=True,
+                   record=dict(accessories=[peak, dip, level, area, when]), sensitivities=[r, g, x], **tight)
+
+    def speed(r, g, x0):
+        return r * np.sqrt(2 * g * x0)
+
+    falls = {peak: lambda r, g, x0: 0 * x0, dip: lambda r, g, x0: -np.sqrt(2 * g * x0), when: lambda r, g, x0: x0,
+             level: lambda r, g, x0: 0 * x0, area: lambda r, g, x0: 2 / 3 * x0 * np.sqrt(2 * x0 / g)}
+    flies = {peak: speed, dip: lambda *at: -speed(*at), level: lambda r, g, x0: 0 * x0,
+             area: lambda r, g, x0: 2 / 3 * speed(r, g, x0)**3 / g**2, when: lambda r, g, x0: r**2 * x0}
+    for phase, expected in enumerate((falls, flies)):
+        for accessory, f in expected.items():
+            np.testing.assert_allclose(run.sensitivity[accessory][0, phase], by_differences(f, at), rtol=1e-7,
+                                       atol=1e-8, err_msg=f"{accessory} in phase {phase}")
+
+
+def test_a_threshold_is_a_parameter_of_an_event():
+    # x = x0 exp(-k t) passes c at log(x0 / c) / k, after which it is made up to a: v, whose slope is x, has a corner.
+    c = my.parameter("c")
+    model = my.model({x: -k * x, v: x}, events=my.event(x - c, direction="falling", do={x: x + r}), name="threshold")
+    at, end = np.array([0.5, 0.6, 2.0, 1.5]), 2.0  # k, c, x0, r
+
+    def after(k, c, x0, r):
+        t = np.log(x0 / c) / k
+        left = end - t
+        return np.array([(c + r) * np.exp(-k * left), (x0 - c) / k + (c + r) * (1 - np.exp(-k * left)) / k])
+
+    end = 3.0
+    run = my.solve(model, {k: at[0], c: at[1], r: at[3]}, start={x: at[2], v: 0}, time=(0, end),
+                   sensitivities=[k, c, x, r], **tight)
+    np.testing.assert_allclose([run[x][0], run[v][0]], after(*at), rtol=1e-9)
+    np.testing.assert_allclose([run.sensitivity[x][0], run.sensitivity[v][0]], by_differences(after, at), rtol=1e-7)
+
+
+def test_a_phase_that_a_stop_ends_has_the_derivative_of_its_time():
+    model = my.model({x: -k * x}, stops=my.stop(r, do={my.end_phase: True}), name="stopped")
+    run = my.solve(model, {k: 0.5, r: 1.5}, start={x: 2}, time=(0, 10), sensitivities=[k, r], **tight)
+    assert run.t[0] == pytest.approx(1.5)
+    np.testing.assert_allclose(run.sensitivity[my.time][0], [0, 1], atol=1e-12)
+    value = 2 * np.exp(-0.75)
+    np.testing.assert_allclose(run.sensitivity[x][0], [-1.5 * value, -0.5 * value], rtol=1e-8)
