@@ -42,6 +42,15 @@ found = optimize.minimize(loss, np.log(theta), jac=True, method="BFGS")
 # end of snippet
 np.testing.assert_allclose(np.exp(found.x), true, rtol=0.02)
 
+# snippet: adjoint
+by_adjoint = my.batched(model, by=rates, of=[prey, predator], start={prey: 30, predator: 4}, time=(0, 20),
+                        samples=np.arange(1, 21), adjoint=True)
+
+# the results, and the derivatives of half the sum of squares, whose derivatives by the results are the residuals
+results, gradient = by_adjoint.vjp(theta, lambda results: results - data)
+# end of snippet
+np.testing.assert_allclose(gradient, np.einsum("tq,tqi->i", simulate(theta) - data, slopes), rtol=1e-5)
+
 # snippet: emcee
 def log_probability(rows):
     """Of the logarithms of the rates in rows: all walkers of half an ensemble are one call."""

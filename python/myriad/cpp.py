@@ -420,7 +420,8 @@ class Writer:
         prefix = {"state": names.y, "parameter": names.p}.get(kind, f"{names.p}.{kind}")
         return f"{prefix}[{name}]"
 
-    def function(self, name: str, count: int | str, roots: Sequence[Node]) -> list[str]:
+    def function(self, name: str, count: int | str, roots: Sequence[Node], further: Sequence[str] = ()) -> list[str]:
+        """A function of time, state and parameters, and of `further` arguments."""
         n = self.names
         body = Body(roots, n, self.in_function, scalar=False)
         values = []
@@ -431,7 +432,7 @@ class Writer:
         kinds = {node.value[0] if node.op == "symbol" else "shared" for node in used}
         arguments = [f"auto {n.t}" if "built-in" in kinds else "auto",
                      f"const myriad::vec<{n.R}, n_state>&" + (f" {n.y}" if "state" in kinds else ""),
-                     "const auto&" + (f" {n.p}" if kinds - {"built-in", "state"} else "")]
+                     "const auto&" + (f" {n.p}" if kinds - {"built-in", "state"} else ""), *further]
         lines = [f"template <class {n.R}>"]
         lines += _wrap(f"MYRIAD_FUNCTION static myriad::vec<{n.R}, {count}> {name}({', '.join(arguments)}) {{", 0)
         for statement in body.lines:

@@ -120,3 +120,55 @@ def derivatives(roots: Sequence[Node], symbols: Sequence[Node]) -> list[dict[int
                     total[i] = total[i] + term if i in total else term
         found[id(node)] = total
     return [found[id(root)] for root in roots]
+
+
+def _cheap_rule(op: str) -> Callable[..., Sequence[Any]] | None:
+    """The same, with one division where a quotient and its derivatives would take three."""
+    return (lambda f, a, b: (1 / b, -(a * (1 / b)) * (1 / b))) if op == "divide" else _partials.get(op)
+
+
+def transposed(roots: Sequence[Node], weights: Sequence[Expression],
+               symbols: Sequence[Node]) -> list[Expression] | None:
+    """For each symbol the sum over the roots of a weight times the derivative by the symbol, at the cost of a few times
+    the roots, however many symbols there are: reverse mode. None where `derivatives` gives None."""
+    depends = {id(s) for s in symbols}
+    order = ex.walk(roots)
+    for node in order:
+        if node.type == ex.real and any(id(a) in depends for a in node.args):
+            depends.add(id(node))
+    by: dict[int, Expression] = {}  # the derivative of the sum by each node
+
+    def add(node: Node, term: Expression) -> None:
+        if id(node) in depends:
+            by[id(node)] = by[id(node)] + term if id(node) in by else term
+
+    for root, weight in zip(roots, weights):
+        add(root, weight)
+    for node in reversed(order):
+        if id(node) not in by or not node.args:
+            continue
+        rule = _cheap_rule(node.op)
+        if rule is None:
+            return None
+        for partial, argument in zip(rule(node, *node.args), node.args):
+            if partial is not None and id(argument) in depends:
+                add(argument, _times(partial, by[id(node)]))
+    return [by.get(id(s), ex.constant(0.0)) for s in symbols]
+
+
+def directional(roots: Sequence[Node], symbols: Sequence[Node],
+                direction: Sequence[Expression]) -> list[Expression] | None:
+    """The derivatives of the roots where each symbol moves by its component of a direction. None where `derivatives`
+    gives None."""
+    moves: dict[int, Expression] = {id(s): d for s, d in zip(symbols, direction)}
+    for node in ex.walk(roots):
+        if node.type != ex.real or not any(id(a) in moves for a in node.args):
+            continue
+        rule = _cheap_rule(node.op)
+        if rule is None:
+            return None
+        terms = [_times(partial, moves[id(a)]) for partial, a in zip(rule(node, *node.args), node.args)
+                 if partial is not None and id(a) in moves]
+        for term in terms:
+            moves[id(node)] = moves[id(node)] + term if id(node) in moves else term
+    return [moves.get(id(root), ex.constant(0.0)) for root in roots]

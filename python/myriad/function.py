@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import kinds
+from .adjoint import Adjoint
 from .components import Components, by_component, unknown
 from .device import is_on_gpu
 from .errors import Error
@@ -38,7 +39,7 @@ class Batched:
     any were asked for, and one of the quantities `of`. It is NaN for instances that have failed."""
 
     def __init__(self, model: AnyModel, by: SomeComponents, of: SomeComponents, sweep: ByComponent | None,
-                 start: ByComponent | None, options: Mapping[str, Any]) -> None:
+                 start: ByComponent | None, options: Mapping[str, Any], adjoint: bool = False) -> None:
         components = Components(model)
         self.model = model
         self.by = [components.component(one) for one in _listed(by)]  #: names of the components that vary
@@ -76,6 +77,9 @@ class Batched:
         self.n_samples = None if samples is None else self._count(samples)  #: None without samples
         if self.n_samples is not None and any(one is time_symbol for one in self.of):
             raise Error("of= has the time at which the last phase ended, which has no samples: leave out samples=")
+        #: of `vjp`; None for forward sensitivities
+        self.adjoint = Adjoint(model, self.by, self.of, self._sweep, self._start, self._plain_options(),
+                               samples) if adjoint else None
 
     @staticmethod
     def _count(samples: Any) -> int:
@@ -115,13 +119,15 @@ class Batched:
     def run_columns(self, columns: Sequence[Any], sensitivities: bool = False) -> Run:
         """The same of one array of values for each component of by=."""
         given = dict(zip(self.by, columns))
-        options = self._options
-        if not sensitivities:
-            options = {key: self._tolerances_of_states(value) if key in ("rtol", "atol") else value
-                       for key, value in options.items() if key != "sensitivity_control"}
+        options = self._options if sensitivities else self._plain_options()
         sweep = {**self._sweep, **{name: value for name, value in given.items() if name not in self._initial}}
         return solve(self.model, sweep, start={**self._start, **{name: given[name] for name in self._initial}},
                      sensitivities=self.by if sensitivities else None, **options)
+
+    def _plain_options(self) -> dict[str, Any]:
+        """The options of a call without sensitivities."""
+        return {key: self._tolerances_of_states(value) if key in ("rtol", "atol") else value
+                for key, value in self._options.items() if key != "sensitivity_control"}
 
     def _tolerances_of_states(self, tolerance: Any) -> Any:
         if not hasattr(tolerance, "items"):
@@ -163,6 +169,29 @@ class Batched:
         slopes = slopes.reshape(len(self.by), len(self.of), *slopes.shape[1:])
         return self._values(run, batch), slopes.T.reshape(*batch, *self.shape, len(self.by))
 
+    def vjp(self, values: Values, weights: Values | Callable[[Array], Any]) -> tuple[Array, Array]:
+        """The results, and the derivatives by the values of a loss that depends on the results: a product of a vector
+        and the Jacobian. `weights` are the loss's derivatives by the results, of their shape, or a function that
+        returns them for results of some rows, [row, time, quantity] or [row, quantity]. With `adjoint=True` the cost
+        hardly depends on the number of values; else it is that of `with_jacobian`. Instances that have failed have
+        NaN."""
+        rows, batch = self._rows(values)
+        if self.adjoint is None:
+            results, jacobian = self.with_jacobian(rows)
+            given = weights(results) if callable(weights) else weights
+            flat = np.broadcast_to(np.asarray(given, float), (*batch, *self.shape)).reshape(len(rows), -1)
+            gradient = (flat[:, None, :] @ jacobian.reshape(len(rows), -1, len(self.by)))[:, 0]
+        else:
+            if not callable(weights):
+                flat = np.broadcast_to(np.asarray(weights, float), (*batch, *self.shape)).reshape(-1, *self.shape)
+
+            def of_part(part: slice, found: Array) -> Array:
+                given = weights(found.reshape(-1, *self.shape)) if callable(weights) else flat[part]
+                return np.broadcast_to(np.asarray(given, float), (len(found), *self.shape)).reshape(found.shape)
+
+            results, gradient, _ = self.adjoint.gradient(rows, of_part)
+        return results.reshape(*batch, *self.shape), gradient.reshape(*batch, len(self.by))
+
     def to_jax(self) -> Callable[[Any], Any]:
         """The function for JAX arrays, under `jit`, `vmap`, `grad`, `jvp` and `vjp`; a batch by `vmap` is one call of
         `solve`. The derivatives are along the solution, with its tolerances; there are no second ones. Results have the
@@ -190,7 +219,7 @@ def _contiguous(column: Any) -> Any:
 
 
 def batched(model: AnyModel, *, by: SomeComponents, of: SomeComponents, sweep: ByComponent | None = None,
-            start: ByComponent | None = None, **options: Any) -> Batched:
+            start: ByComponent | None = None, adjoint: bool = False, **options: Any) -> Batched:
     """The model as a function of values of some components, in arrays.
 
     by        the components that vary, parameters and initial states: the last axis of the argument
@@ -198,7 +227,10 @@ def batched(model: AnyModel, *, by: SomeComponents, of: SomeComponents, sweep: B
               of the result
     sweep     the other parameters and shared values, one number each
     start     the other initial states, one number each
+    adjoint   whether gradients are computed by an adjoint, whose cost hardly depends on the number of components that
+              they are by: those of `vjp`, and in JAX and PyTorch those of reverse mode, beside which there is no other
+              then
     options   of `solve`, as time=, samples=, method=, rtol=, device=, sensitivity_control=
 
     The argument has any number of axes before the last, all of which are integrated at once."""
-    return Batched(model, by, of, sweep, start, options)
+    return Batched(model, by, of, sweep, start, options, adjoint)

@@ -69,15 +69,28 @@ def jax_function(function: Batched, platform: str = "cuda") -> Callable[[Any], A
 
     values, values_and_jacobian = solved(False), solved(True)
 
-    @jax.custom_jvp
+    def pulled_back(theta: Any, weights: Any) -> Any:
+        def on_host(rows: Any, of_rows: Any) -> Any:
+            return function.vjp(np.asarray(rows), np.asarray(of_rows))[1].astype(theta.dtype)
+
+        return jax.pure_callback(on_host, jax.ShapeDtypeStruct(theta.shape, theta.dtype), theta, weights,
+                                 vmap_method="broadcast_all")
+
     def of_floats(theta: Any) -> Any:
         return values(theta)[0]
 
-    @of_floats.defjvp
-    def _(primals: Any, tangents: Any) -> Any:
+    def pushed_forward(primals: Any, tangents: Any) -> Any:
         found, jacobian = values_and_jacobian(primals[0])
         along = tangents[0].reshape(*tangents[0].shape[:-1], *[1] * len(function.shape), n_by)
         return found, (jacobian * along).sum(-1)
+
+    rule: Any
+    if function.adjoint is None:
+        rule = jax.custom_jvp(of_floats)
+        rule.defjvp(pushed_forward)
+    else:
+        rule = jax.custom_vjp(of_floats)
+        rule.defvjp(lambda theta: (of_floats(theta), theta), lambda theta, weights: (pulled_back(theta, weights),))
 
     def call(theta: Any) -> Any:
         theta = jnp.asarray(theta)
@@ -86,6 +99,6 @@ def jax_function(function: Batched, platform: str = "cuda") -> Callable[[Any], A
                         f"{', '.join(function.by)}, {n_by} in number")
         if not jnp.issubdtype(theta.dtype, jnp.floating):
             theta = theta.astype(jnp.result_type(float))
-        return of_floats(theta)
+        return rule(theta)
 
     return call

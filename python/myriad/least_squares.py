@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import kinds
+from .adjoint import Adjoint
 from .components import Components, by_component, unknown
 from .core_options import per_state
 from .errors import Error
@@ -102,7 +103,8 @@ class LeastSquares(Objective):
     as one ensemble; residuals are in the order of `labels`."""
 
     def __init__(self, model: AnyModel, data: Any, free: ByComponent, sweep: ByComponent | None,
-                 start: ByComponent | None, begin: float, sigma: Any, options: Mapping[str, Any]) -> None:
+                 start: ByComponent | None, begin: float, sigma: Any, options: Mapping[str, Any],
+                 adjoint: bool = False) -> None:
         self.model = model
         self._components = components = Components(model)
         super().__init__([Free(components.component(name), bounds) for name, bounds in by_component(
@@ -132,6 +134,17 @@ class LeastSquares(Objective):
         self._options = {**options, "atol": self._tolerances(options)}
         self._begin = real(begin, "begin")
         self._read(data, sigma)
+        self._adjoint = self._make_adjoint() if adjoint else None
+        self._last_gradient: tuple[Any, ...] = ()
+
+    def _make_adjoint(self) -> Adjoint:
+        return Adjoint(self.model, self.names, list(self.data), self._sweep, self._start,
+                       {**self._plain_options(), "time": (self._begin, float(self.times[-1]))}, self.times)
+
+    def _plain_options(self) -> dict[str, Any]:
+        """The options of a call without sensitivities."""
+        return {**self._options, "atol": {c: t for c, t in self._options["atol"].items()
+                                          if c in self._components.states}}
 
     def _tolerances(self, options: Mapping[str, Any]) -> dict[str, float]:
         """Absolute tolerances of states, and of their derivatives, whose product with a free component is to be as
@@ -217,9 +230,7 @@ class LeastSquares(Objective):
         if len(states) == len(self.data):
             samples["states"] = states
         initial = {name: value for name, value in given.items() if name in self._components.states}
-        options = self._options
-        if not sensitivities:
-            options = {**options, "atol": {c: t for c, t in options["atol"].items() if c in self._components.states}}
+        options = self._options if sensitivities else self._plain_options()
         return solve(self.model, {**self._sweep, **{n: v for n, v in given.items() if n not in initial}},
                      start={**self._start, **initial}, time=(self._begin, float(self.times[-1])), samples=samples,
                      sensitivities=self.names if sensitivities else None, **options)
@@ -246,13 +257,47 @@ class LeastSquares(Objective):
         """The derivatives of the residuals by the free components, one row for each residual."""
         return self._once(values, 2)
 
+    def _by_adjoint(self, adjoint: Adjoint, values: Values) -> tuple[Any, Array]:
+        """The loss and its gradient, once for both of the same values."""
+        sets = self._sets(values)
+        if not self._last_gradient or not np.array_equal(self._last_gradient[0], sets):
+            def weights_of(part: slice, found: Array) -> Array:
+                weights, first = np.zeros(found.shape), 0
+                for q, where in enumerate(self._where.values()):
+                    these = slice(first, first := first + len(where))
+                    sigma = self._sigma[these]
+                    residuals = (found[:, where, q] - self._observed[these]) / sigma
+                    np.add.at(weights[:, :, q].T, where, (residuals / sigma).T)
+                    losses[part] += 0.5 * np.sum(residuals * residuals, axis=1)
+                return weights
+
+            rows = np.atleast_2d(sets)
+            losses = np.zeros(len(rows))
+            gradient = adjoint.gradient(rows, weights_of)[1]
+            self._last_gradient = (sets.copy(), losses, gradient)
+        _, losses, gradient = self._last_gradient
+        return (losses[0], gradient[0].copy()) if sets.ndim == 1 else (losses.copy(), gradient.copy())
+
+    def loss(self, values: Values) -> Any:
+        """Half the sum of the squares of the residuals: a number, or one for each set."""
+        if self._adjoint is not None:
+            return self._by_adjoint(self._adjoint, values)[0]
+        return super().loss(values)
+
+    def gradient(self, values: Values) -> Array:
+        """The derivatives of the loss by the free components."""
+        if self._adjoint is not None:
+            return self._by_adjoint(self._adjoint, values)[1]
+        return super().gradient(values)
+
 
 def least_squares(model: AnyModel, data: Any, *, free: ByComponent, sweep: ByComponent | None = None,
-                  start: ByComponent | None = None, begin: float = 0.0, sigma: Any = None, **options: Any
-                  ) -> LeastSquares:
+                  start: ByComponent | None = None, begin: float = 0.0, sigma: Any = None, adjoint: bool = False,
+                  **options: Any) -> LeastSquares:
     """The least-squares problem of a model and data, for optimisers and samplers of other packages; arguments as of
-    `fit`. It has `residuals`, `jacobian`, `loss`, `gradient` and `bounds`."""
-    return LeastSquares(model, data, free, sweep, start, begin, sigma, options)
+    `fit`. It has `residuals`, `jacobian`, `loss`, `gradient` and `bounds`. With `adjoint=True` loss and gradient are
+    computed together by an adjoint, at a cost that hardly depends on the number of free components."""
+    return LeastSquares(model, data, free, sweep, start, begin, sigma, options, adjoint)
 
 
 def logarithms(free: Sequence[Free], values: Array) -> Array:

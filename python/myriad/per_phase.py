@@ -9,7 +9,7 @@ users see, in `cpp()` and in messages, has its formulas as they are.
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from . import _core, expression as ex, kinds, symbols as sym
@@ -101,6 +101,11 @@ def _rebuilt(roots: list[Expression], changed: Callable[[Node], Any],
         same = all(a is b for a, b in zip(arguments, node.args))
         made[node] = changed(node if same else ex.make(node.op, arguments, node.value, node.type))
     return [made[root] for root in roots]
+
+
+def substituted(expression: Expression, values: Mapping[Any, float]) -> Expression:
+    """An expression with the values of some symbols in their place."""
+    return _rebuilt([expression], lambda node: node, {s: constant(float(v)) for s, v in values.items()})[0]
 
 
 def _room(model: Model) -> int:

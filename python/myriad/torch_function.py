@@ -49,6 +49,10 @@ def torch_function(function: Batched) -> Callable[[Any], Any]:
         values, slopes = function.with_jacobian(rows)
         return torch.as_tensor(values).to(theta), torch.as_tensor(slopes).to(theta)
 
+    def no_second() -> Error:
+        return Error("the second derivatives of a solution are asked for, which there are not: let an optimiser use "
+                     "gradients alone")
+
     class Solved(torch.autograd.Function):
         """Values and derivatives; to differentiate these is an error, or gives NaN in forward mode."""
 
@@ -65,8 +69,7 @@ def torch_function(function: Batched) -> Callable[[Any], Any]:
         @staticmethod
         def backward(ctx: Any, of_values: Any, of_jacobian: Any) -> Any:
             if of_jacobian is not None:
-                raise Error("the second derivatives of a solution are asked for, which there are not: let an optimiser "
-                            "use gradients alone")
+                raise no_second()
             if of_values is None:
                 return None
             jacobian, = ctx.saved_tensors
@@ -85,6 +88,47 @@ def torch_function(function: Batched) -> Callable[[Any], Any]:
         @staticmethod
         def vmap(info: Any, in_dims: Any, theta: Any) -> Any:
             return Solved.apply(theta.movedim(in_dims[0], 0)), (0, 0)
+
+    class ByAdjoint(torch.autograd.Function):
+        """Values, whose derivatives an adjoint computes where they are asked for."""
+
+        @staticmethod
+        def forward(theta: Any) -> Any:
+            return solved(theta, False)[0]
+
+        @staticmethod
+        def setup_context(ctx: Any, inputs: Any, output: Any) -> None:
+            ctx.save_for_backward(*inputs)
+
+        @staticmethod
+        def backward(ctx: Any, weights: Any) -> Any:
+            return PulledBack.apply(*ctx.saved_tensors, weights)
+
+        @staticmethod
+        def vmap(info: Any, in_dims: Any, theta: Any) -> Any:
+            return ByAdjoint.apply(theta.movedim(in_dims[0], 0)), 0
+
+    class PulledBack(torch.autograd.Function):
+        """Products of weights and the Jacobian; to differentiate them is an error."""
+
+        @staticmethod
+        def forward(theta: Any, weights: Any) -> Any:
+            gradient = function.vjp(theta.detach().cpu().numpy(), weights.detach().cpu().numpy())[1]
+            return torch.as_tensor(gradient).to(theta)
+
+        @staticmethod
+        def setup_context(ctx: Any, inputs: Any, output: Any) -> None:
+            pass
+
+        @staticmethod
+        def backward(ctx: Any, _: Any) -> Any:
+            raise no_second()
+
+        @staticmethod
+        def vmap(info: Any, in_dims: Any, theta: Any, weights: Any) -> Any:
+            theta, weights = (one.expand(info.batch_size, *one.shape) if place is None else one.movedim(place, 0)
+                              for one, place in zip((theta, weights), in_dims))
+            return PulledBack.apply(theta, weights), 0
 
     class Values(torch.autograd.Function):
         """Values alone, where no derivatives are wanted."""
@@ -107,7 +151,7 @@ def torch_function(function: Batched) -> Callable[[Any], Any]:
                         f"{', '.join(function.by)}, {len(function.by)} in number")
         moves = torch.autograd.forward_ad.unpack_dual(theta).tangent is not None if theta.is_floating_point() else False
         if moves or theta.requires_grad and torch.is_grad_enabled():
-            return Solved.apply(theta)[0]
+            return Solved.apply(theta)[0] if function.adjoint is None else ByAdjoint.apply(theta)
         return Values.apply(theta if theta.is_floating_point() else theta.double())
 
     return call

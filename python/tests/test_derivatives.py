@@ -8,8 +8,8 @@ import pytest
 
 import myriad as my
 from myriad.derivatives import _partials as derivative_rules
-from myriad.derivatives import dependencies, derivatives
-from myriad.expression import evaluate
+from myriad.derivatives import dependencies, derivatives, directional, transposed
+from myriad.expression import constant, evaluate
 
 x, y, z = my.states("x y z")
 k = my.parameter("k")
@@ -47,6 +47,18 @@ def test_derivatives_are_those_of_differences(name):
         assert value == pytest.approx(by_differences(smooth[name], symbol), rel=2e-9, abs=2e-9)
 
 
+@pytest.mark.parametrize("name", smooth)
+def test_reverse_and_directional_derivatives_are_sums_of_derivatives(name):
+    roots, symbols = [smooth[name], z * smooth[name]], [x, y, z, k]
+    matrix = np.array([[evaluate([row.get(i, constant(0.0))], at)[0] for i in range(4)]
+                       for row in derivatives(roots, symbols)])
+    weights, direction = [0.7, -1.3], [0.2, 1.1, -0.4, 0.9]
+    backwards = evaluate(transposed(roots, list(map(constant, weights)), symbols), at)
+    np.testing.assert_allclose(backwards, weights @ matrix, rtol=1e-12, atol=1e-13)
+    along = evaluate(directional(roots, symbols, list(map(constant, direction))), at)
+    np.testing.assert_allclose(along, matrix @ direction, rtol=1e-12, atol=1e-13)
+
+
 def test_steps_have_no_derivatives_and_linear_terms_constant_ones():
     found = derivatives([my.floor(x) + 2.0 * y, my.round(x), z], [x, y, z])
     assert [set(row) for row in found] == [{1}, set(), {2}]
@@ -55,6 +67,7 @@ def test_steps_have_no_derivatives_and_linear_terms_constant_ones():
 def test_an_operation_without_a_rule_leaves_the_pattern(monkeypatch):
     monkeypatch.delitem(derivative_rules, "sin")
     assert derivatives([my.sin(x) * y, z], [x, y, z]) is None
+    assert transposed([my.sin(x) * y], [z], [x]) is None and directional([my.sin(x) * y], [x], [z]) is None
     assert dependencies([my.sin(x) * y, z], [x, y, z]) == [[0, 1], [2]]
 
 

@@ -97,4 +97,23 @@ MYRIAD_FUNCTION void solve_factorised(const lu_factors<S, n>& lu, vec<S, n>& b) 
     });
 }
 
+/// Solves A^T x = b with the factors of A; x replaces b.
+template <class S, int n>
+MYRIAD_FUNCTION void solve_transposed(const lu_factors<S, n>& lu, vec<S, n>& b) {
+    using loop = matrix_loop<S, n>;
+    const auto& a = lu.a;
+    loop::all([&](auto k) MYRIAD_LAMBDA {
+        b[k] = b[k] * a[k][k];
+        loop::after(k, [&](auto i) MYRIAD_LAMBDA { b[i] = fma(-a[k][i], b[k], b[i]); });
+    });
+    loop::all_backwards([&](auto k) MYRIAD_LAMBDA {
+        loop::after(k, [&](auto i) MYRIAD_LAMBDA { b[k] = fma(-a[i][k], b[i], b[k]); });
+        detail::exchange_rows<S, n>(k, lu.pivot[k], [&](auto i, const auto& where) MYRIAD_LAMBDA {
+            const S upper = b[k];
+            b[k] = select(where, b[i], upper);
+            b[i] = select(where, upper, b[i]);
+        });
+    });
+}
+
 }  // namespace myriad::detail::inline MYRIAD_TARGET

@@ -1,0 +1,398 @@
+# SPDX-License-Identifier: MIT
+"""Gradients by a discrete adjoint: the transposed derivative of each recorded step, from the last to the first, at a
+cost that hardly depends on the number of components that they are by."""
+
+from __future__ import annotations
+
+import copy
+import ctypes
+import functools
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import cache, compiler, symbols as sym
+from .components import Components
+from .cpp import Names, Writer
+from .derivatives import directional, transposed
+from .errors import Error
+from .expression import constant, make, symbols_of, text, walk
+from .inputs import numbers, real
+from .methods import default, method_type, stiff
+from .model import Event, Model, Stop
+from .per_phase import substituted
+from .solve import ends_of, solve
+from .statuses import status_names
+
+if TYPE_CHECKING:
+    from .expression import Node
+    from .hints import AnyModel, Array
+    from .run import Run
+
+# Of the records of instances that are integrated at a time, per thread, if there are several: about what its part of
+# the caches holds. With 64 MiB a gradient for 20 reactions took a tenth to a fifth more.
+_most_bytes = 1 << 23
+_cure = "leave out adjoint=True, for forward sensitivities"
+
+
+def _refuse(why: str) -> Error:
+    return Error(f"there is no adjoint, as {why}: {_cure}")
+
+
+class _Writer(Writer):
+    """Writes the functions that kernel/stepper/transposed_step.hpp names. Weights of a product with a transposed
+    derivative are v, the direction of a derivative along the state u, and along time tau."""
+
+    def __init__(self, model: Model) -> None:
+        names = Names(model)
+        self.vectors = {what: names._free(what, f"{what}_") for what in ("v", "u", "tau")}
+        names.taken |= set(self.vectors.values())
+        super().__init__(model, names)
+
+    def in_function(self, node: Node) -> str:
+        kind, name = node.value
+        if kind == "vector":
+            what, number = name
+            return self.vectors[what] + ("" if number is None else f"[{number}]")
+        return super().in_function(node)
+
+    def argument(self, what: str, count: str) -> str:
+        """The text of an argument that is a vector, or a number if `count` is empty."""
+        R = self.names.R
+        return f"const {f'myriad::vec<{R}, {count}>' if count else R}& {self.vectors[what]}"
+
+
+def _vector(what: str, count: int) -> list[Any]:
+    return [make("symbol", value=("vector", (what, i))) for i in range(count)]
+
+
+class Adjoint:
+    """The quantities `of` as a function of the components `by`, and derivatives of losses that depend on them. Values
+    of `by` are in rows, one for each instance; `samples` are a number of times or times, without which the quantities
+    are those at the end; `options` are those of `solve`."""
+
+    def __init__(self, model: AnyModel, by: Sequence[str], of: Sequence[Any], sweep: Mapping[str, Any],
+                 start: Mapping[str, Any], options: Mapping[str, Any], samples: Any = None) -> None:
+        self.model = _checked(model, by)
+        self._actions = [one for one in (*self.model.events, *self.model.stops) if one.do]
+        self._recorded, self._counters = _counting(self.model, self._actions)
+        self._components = components = Components(model)
+        self.by, self.of = list(by), list(of)
+        self._sweep, self._start, self._options = sweep, start, _checked_options(options)
+        for name in components.of(("state", "accessory")):
+            if name not in self.by and components.follows(name, self.by, {*sweep, *start, *self.by}):
+                raise _refuse(f"the initial value of '{name}' follows from components that derivatives are by")
+        self.method = options.get("method") or default
+        self._states = [sym.symbol("state", name) for name in components.states]
+        self._wrt = [name for name in self.by if name not in components.states]  # chosen parameters
+        self._times = _times(samples, self._options["time"])
+        self._capacity, self._threads = 256, 1  # records of an instance, and threads, at first
+        self._place = [components.states.index(name) if name in components.states else
+                       len(components.states) + self._wrt.index(name) for name in self.by]
+        self._quantities = [self._quantity(one) for one in self.of]
+
+    def _quantity(self, name: Any) -> Node:
+        """A result as an expression of states, parameters and time."""
+        components = self._components
+        if name is sym.time or name not in [*components.states, *components.outputs]:
+            raise _refuse(f"a result is {'the time of the end' if name is sym.time else repr(name)}, and states and "
+                          "outputs alone have one")
+        if name not in components.states:
+            return substituted(components.outputs[name], components.constants)
+        return sym.symbol("state", name)
+
+    # The kernel
+
+    def source(self) -> str:
+        """The file that is compiled."""
+        text, struct = self.model.source()
+        n, chosen, writer = len(self._states), len(self._wrt), _Writer(self.model)
+        symbols = [*self._states, *(sym.symbol("parameter", name) for name in self._wrt)]
+        v, u, tau = _vector("v", n), _vector("u", n), make("symbol", value=("vector", ("tau", None)))
+        of_rhs = transposed(self.model.rhs, v, symbols)
+        of_quantities = transposed(self._quantities, _vector("v", len(self.of)), symbols)
+        if of_rhs is None or of_quantities is None:
+            raise _refuse("the model looks up a table")
+        count = f"n_state + {chosen}"
+        functions = [
+            writer.function("transposed_rhs", count, of_rhs, [writer.argument("v", "n_state")]),
+            writer.function("quantities", len(self.of), self._quantities),
+            writer.function("transposed_quantities", count, of_quantities, [writer.argument("v", str(len(self.of)))])]
+        if self.method in stiff:
+            moved = directional(self.model.rhs, [*self._states, sym.time], [*u, tau])
+            of_slope = None if moved is None else transposed(moved, v, symbols)
+            if of_slope is None:
+                raise _refuse("the equations have no second derivatives")
+            functions.append(writer.function("transposed_slope", count, of_slope, [
+                writer.argument("u", "n_state"), writer.argument("tau", ""), writer.argument("v", "n_state")]))
+        for number, one in enumerate(self._actions):
+            functions += self._action(one, writer, number, v, [*symbols, sym.time], count)
+        are_events = ", ".join("true" if isinstance(one, Event) else "false" for one in self._actions)
+        body = "\n\n".join("\n".join(f"    {line}" for line in function) for function in functions)
+        return (f"#include <myriad/python/adjoint_library.hpp>\n\n{text}\nstruct {struct}_adjoint : {struct} {{\n"
+                f"    static constexpr int n_wrt = {chosen}, n_quantity = {len(self.of)}, "
+                f"n_action = {len(self._actions)};\n"
+                f"    static constexpr bool is_event[] = {{{are_events or 'false'}}};\n\n{body}\n}};\n"
+                f"using myriad_method = {method_type(self.method)};\n"
+                f"MYRIAD_ADJOINT_LIBRARY({struct}_adjoint, myriad_method)\n")
+
+    def _action(self, one: Event | Stop, writer: _Writer, number: int, v: list[Any], symbols: list[Any],
+                count: str) -> list[list[str]]:
+        """The functions of an action."""
+        new = {target.value[1]: value for target, value in one.do}
+        after = [new.get(s.value[1], s) for s in self._states]
+        this = f"myriad::detail::constant_index<{number}>"
+        of_state = transposed(after, v, symbols)
+        of_event = transposed([one.function], [constant(1.0)], symbols) if isinstance(one, Event) else []
+        if of_state is None or of_event is None:
+            raise _refuse(f"'{one.name}' looks up a table")
+        made = [writer.function("act", "n_state", after, [this]),
+                writer.function("transposed_act", f"{count} + 1", of_state, [writer.argument("v", "n_state"), this])]
+        return [*made, writer.function("slope_of_event", f"{count} + 1", of_event, [this])] if of_event else made
+
+    @functools.cached_property
+    def _kernel(self) -> Callable[..., None]:
+        by, source = compiler.compiler(), self.source()
+        loaded = cache.obtain(by.made_from(source), lambda folder: compiler._compile(by, source, folder),
+                              ctypes.CDLL).loaded
+        function = loaded.myriad_adjoint
+        function.argtypes, function.restype = [ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64], None
+        return function
+
+    # What it computes
+
+    def gradient(self, rows: Array, weights_of: Callable[[slice, Array], Array]) -> tuple[Array, Array, Array]:
+        """The quantities at the times, [instance, time, quantity], derivatives of a loss by the components, [instance,
+        component], and the statuses. `weights_of(part, values)` gives the derivatives of the loss by the values of a
+        part of the instances. Instances that failed have NaN. They are integrated in groups whose records fit
+        into 8 MiB for each thread."""
+        count, at = len(rows), self._times
+        values = np.full((count, 1 if at is None else len(at), len(self.of)), np.nan)
+        gradient = np.full((count, len(self.by)), np.nan)
+        status = np.zeros(count, np.int32)
+        first = 0
+        while first < count:
+            group = max(1, self._threads * _most_bytes // (8 * (len(self._recorded.states) + 1) * self._capacity))
+            part = slice(first, min(count, first + group))
+            run = self._record(rows[part])
+            stored, kept = run.stored_samples, self._capacity
+            longest = max(int(stored.max()), int(run.steps("accepted").max())) + 1
+            self._capacity, self._threads = longest + longest // 8, run.report.threads  # for what follows
+            if (stored >= kept).any():  # maybe not all steps were kept
+                continue
+            done = run.status == status_names.index("success")
+            self._check_actions(run, done)
+            call = _Call(run, at, self._components, self._counters)
+            values[part] = call.values(self._kernel, len(self.of))
+            values[part][~done] = np.nan
+            weights = np.ascontiguousarray(weights_of(part, values[part]), float)
+            found = call.gradient(self._kernel, np.where(done[:, None, None], weights, 0.0),
+                                  len(self._states) + len(self._wrt))
+            found[~(np.isfinite(found).all(axis=1) & done)] = np.nan
+            gradient[part], status[part] = found[:, self._place], run.status
+            first = part.stop
+        return values, gradient, status
+
+    def _record(self, rows: Array) -> Run:
+        """The run of some rows, with all steps as samples."""
+        given = {name: np.ascontiguousarray(rows[:, i]) for i, name in enumerate(self.by)}
+        initial = {name: given.pop(name) for name in self.by if name in self._components.states}
+        options = {key: self._with_counters(value) if key in ("rtol", "atol") else value
+                   for key, value in self._options.items()}
+        return solve(self._recorded, {**self._sweep, **given},
+                     start={**self._start, **initial, **dict.fromkeys(self._counters, 0.0)},
+                     samples={"every": 1, "capacity": self._capacity}, **options)
+
+    def _check_actions(self, run: Run, done: Array) -> None:
+        """Refuses actions at one time in instances that are done, unless all are of stops, in their order, and each
+        acts once."""
+        if not self._counters:
+            return
+        counts = np.stack([np.pad(run.samples[name], ((0, 0), (0, 1)), constant_values=np.nan)
+                           for name in self._counters])
+        ends = np.broadcast_to(run.stored_samples, counts.shape[:2])[..., None]
+        np.put_along_axis(counts, ends, np.stack([run.states[name] for name in self._counters])[..., None], axis=2)
+        acted = np.nan_to_num(np.diff(counts, axis=2))[:, done]
+        of_events = acted[[isinstance(one, Event) for one in self._actions]].sum(axis=0)
+        if (acted > 1).any() or ((of_events > 0) & (acted.sum(axis=0) > 1)).any():
+            raise _refuse("an instance has several actions at one time, of an event and others, or of one stop")
+
+    def _with_counters(self, tolerance: Any) -> Any:
+        """Tolerances in the order of states, also of those that count actions."""
+        if not self._counters or hasattr(tolerance, "items") or np.size(tolerance) == 1:
+            return tolerance
+        return [*np.asarray(tolerance, float), *[1.0] * len(self._counters)]
+
+
+def _checked(model: AnyModel, by: Sequence[str]) -> Model:
+    """The model. Refuses one that has no adjoint."""
+    if not isinstance(model, Model):
+        raise _refuse("the model is not traced from Python, but written in C++ or made of another")
+    if model.mass_matrix is not None:
+        raise _refuse("the model has a mass matrix")
+    if model.triggers or model.queue is not None:
+        raise _refuse("the model has triggers")
+    if model.initialise or model.after_step or model.finalise:
+        raise _refuse("the model has hooks or accessories")
+    if any(s.value[0] in ("accessory", "integer_accessory") for s in symbols_of(model.rhs)):
+        raise _refuse("the equations read accessories")
+    for one in (*model.events, *model.stops):
+        is_event = isinstance(one, Event)
+        what = f"the {'event' if is_event else 'stop'} '{one.name}'"
+        if isinstance(one, Event) and one.stop_after:
+            raise _refuse(f"{what} ends phases")
+        for target, value in one.do:
+            if target.value[0] != "state":
+                raise _refuse(f"{what} assigns {target.value[1]}, and no state")
+            for symbol in symbols_of([value]):
+                if symbol.value[0] not in ("state", "parameter", "shared", "shared_integer") and symbol is not sym.time:
+                    raise _refuse(f"the action of {what} reads {symbol.value[1]}")
+        if one.do and isinstance(one, Stop) and any(s.value[1] in by for s in symbols_of(one.values)):
+            raise _refuse(f"the time of {what} depends on components that derivatives are by")
+        # where the slope jumps, that before an event is not known from its state
+        if one.do and is_event and (jump := next(filter(_may_jump, walk(model.rhs)), None)) is not None:
+            raise _refuse(f"{what} acts, and the equations have `{text(jump)}`, which may jump there")
+    return model
+
+
+def _may_jump(node: Node) -> bool:
+    """Whether an operation may jump along the solution."""
+    jumping = ("select", "copysign", "floor", "rint", "fmod", "floor_mod", "floor_divide", "find_interval")
+    return node.op in jumping and any(s.value[0] == "state" or s is sym.time for s in symbols_of([node]))
+
+
+def _counting(model: Model, actions: Sequence[Event | Stop]) -> tuple[Model, list[str]]:
+    """The model with a state for each action, which counts how often it acted, and their names. So the samples tell
+    where actions were."""
+    if not actions:
+        return model, []
+    taken = [*model.component_names, *getattr(model, "outputs", {}), *getattr(model, "aliases", {})]
+    counters: dict[int, Any] = {}
+    for one in actions:
+        taken.append(sym.free_name(f"acted_{len(counters) + 1}", taken))
+        counters[id(one)] = sym.symbol("state", taken[-1])
+    names = [counter.value[1] for counter in counters.values()]
+
+    def counted(one: Any) -> Any:
+        made = copy.copy(one)
+        if id(one) in counters:
+            made.do = [*one.do, (counters[id(one)], counters[id(one)] + 1)]
+        return made
+
+    made = copy.copy(model)
+    made.__dict__.pop("_prepared", None)
+    made._source, made.units_of_states = None, None
+    made.rhs, made.states = [*model.rhs, *[constant(0.0)] * len(names)], [*model.states, *names]
+    made.events, made.stops = [counted(e) for e in model.events], [counted(s) for s in model.stops]
+    made._collect([sym.symbol("state", name) for name in made.states])
+    return made, names
+
+
+def _checked_options(options: Mapping[str, Any]) -> dict[str, Any]:
+    """Options of `solve` that records of all steps are made with. Refuses those that an adjoint cannot have."""
+    made = {key: value for key, value in options.items() if key not in ("samples", "sensitivity_control")}
+    known = made.get("options")
+    for name, usual in (("phases", 1), ("events", None), ("carry_on", False), ("phase_length", 0),
+                        ("tolerance_scale", None)):
+        given = made.get(name, usual if known is None else getattr(known, name, usual))
+        if given != usual and given is not None:
+            raise _refuse(f"{name}= is {given!r}")
+    if made.get("precision", "double") != "double":
+        raise _refuse("it is in double precision alone")
+    if made.get("interpreted"):
+        raise _refuse("the model is interpreted")
+    devices = made.get("device", "auto")
+    if devices == "auto":
+        made["device"] = "cpu"
+    elif not str(devices).startswith("cpu"):
+        raise Error(f"device is {devices!r}, and an adjoint is computed on the CPU alone: give device=\"cpu\", or "
+                    f"{_cure}")
+    begin, end = ends_of(made.get("time"))
+    if any(np.ndim(numbers(one, "time")) for one in (begin, end)):
+        raise _refuse("the instances have time domains of their own")
+    return made
+
+
+def _times(samples: Any, domain: Any) -> Array | None:
+    """The times of samples."""
+    begin, end = (real(one, "time") for one in ends_of(domain))
+    if samples is None:
+        return None
+    times = np.linspace(begin, end, int(samples)) if np.ndim(samples) == 0 else np.array(samples, float)
+    sign = 1 if begin <= end else -1
+    if times.ndim != 1 or not (np.diff(sign * times) > 0).all() or not (
+            (sign * begin <= sign * times) & (sign * times <= sign * end)).all():
+        raise _refuse("times of samples are out of order, differ between instances, or lie outside the time domain")
+    return times
+
+
+class _Call:
+    """`adjoint_call` of adjoint_library.hpp for a run of which all steps are recorded."""
+
+    class _Arguments(ctypes.Structure):
+        _fields_ = [("size", ctypes.c_int64), *((name, ctypes.c_void_p) for name in (
+            "stored", "time", "state", "acted", "acted_in_all", "parameter", "shared", "shared_integer",
+            "sample_time")),
+            ("samples", ctypes.c_int64), ("values", ctypes.c_void_p), ("weights", ctypes.c_void_p),
+            ("gradient", ctypes.c_void_p)]
+
+    def __init__(self, run: Run, times: Array | None, components: Components, counters: Sequence[str]) -> None:
+        ensemble = run._ensemble
+        self._size, self._samples, self._threads = run.size, 1 if times is None else len(times), run.report.threads
+        self._kept: list[Any] = [run]  # what addresses are of
+
+        def all_of(kind: str) -> list[Array]:
+            return [run._last_values([kind])[name] for name in components.names[kind]]
+
+        def shared(kind: str, type: Any) -> Array:
+            return np.array([ensemble.array(kind)[run._components.place[name][1]] for name in components.names[kind]],
+                            type)
+
+        self._arguments = self._Arguments(
+            size=run.size, stored=self._address(np.ascontiguousarray(run.stored_samples, np.int32)),
+            time=self._address(ensemble.samples(-1)),
+            state=self._addresses([run.samples[name] for name in components.states]),
+            acted=self._addresses([run.samples[name] for name in counters]),
+            acted_in_all=self._addresses([run.states[name] for name in counters]),
+            parameter=self._addresses(all_of("parameter")), shared=self._address(shared("shared", float)),
+            shared_integer=self._address(shared("shared_integer", np.int32)),
+            sample_time=None if times is None else self._address(times), samples=self._samples)
+
+    def _address(self, array: Array) -> int:
+        self._kept.append(array)
+        return array.ctypes.data
+
+    def _addresses(self, arrays: Sequence[Array]) -> int:
+        made = (ctypes.c_void_p * max(len(arrays), 1))(*map(self._address, arrays))
+        self._kept.append(made)
+        return ctypes.addressof(made)
+
+    def _run(self, kernel: Callable[..., None]) -> None:
+        """Divides the instances among threads, by whole packs."""
+        part = max(64, -(-self._size // (4 * self._threads)) // 64 * 64)
+        address = ctypes.addressof(self._arguments)
+        parts = [(address, first, min(first + part, self._size)) for first in range(0, self._size, part)]
+        if len(parts) == 1 or self._threads == 1:
+            kernel(address, 0, self._size)
+            return
+        with ThreadPoolExecutor(self._threads) as pool:
+            for _ in pool.map(lambda one: kernel(*one), parts):
+                pass
+
+    def values(self, kernel: Callable[..., None], quantities: int) -> Array:
+        """The quantities at the times."""
+        found = np.full((self._size, self._samples, quantities), np.nan)
+        self._arguments.values = found.ctypes.data
+        self._run(kernel)
+        return found
+
+    def gradient(self, kernel: Callable[..., None], weights: Array, components: int) -> Array:
+        """The derivatives of a loss that has these derivatives by the values."""
+        found = np.full((self._size, components), np.nan)
+        weights = np.ascontiguousarray(weights)
+        self._arguments.values, self._arguments.weights = None, weights.ctypes.data
+        self._arguments.gradient = found.ctypes.data
+        self._run(kernel)
+        return found
