@@ -17,12 +17,12 @@ from pathlib import Path
 
 
 def shared_functions(build, nm, entries):
-    """Of model files that are optimised, so that functions of the standard library are inlined."""
+    """Of model files that are optimised, so that functions of the standard library are inlined, if only by -O1."""
     wrong, seen = [], 0
     for entry in entries:
         words, source = shlex.split(entry["command"]), Path(entry["file"])
         levels = [word for word in words if re.match(r"-O\w*$", word)]
-        if "-DMYRIAD_MODEL_FILE" not in words or levels[-1:] not in (["-O2"], ["-O3"]) or not source.exists():
+        if "-DMYRIAD_MODEL_FILE" not in words or levels[-1:] not in (["-O1"], ["-O2"], ["-O3"]) or not source.exists():
             continue
         target = build / words[words.index("-o") + 1]
         text = source.read_text(encoding="utf-8")

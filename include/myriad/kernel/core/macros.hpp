@@ -59,8 +59,13 @@
 #define MYRIAD_TARGET cuda_lane
 #define MYRIAD_BACKEND_HEADER "myriad/cuda/run.cuh"
 #else
+#if defined(MYRIAD_OUT_OF_LINE)  // tests' kernels, which need not be fast: compiled in less than half of the time
+#define MYRIAD_FUNCTION inline constexpr
+#define MYRIAD_LAMBDA
+#else
 #define MYRIAD_FUNCTION inline __attribute__((always_inline)) constexpr
 #define MYRIAD_LAMBDA __attribute__((always_inline))
+#endif
 #if defined(__clang__)
 #define MYRIAD_FLATTEN
 #define MYRIAD_WHOLE_LOOP static_cast<void>(0)
@@ -72,7 +77,11 @@
 /// Inlines all calls within a function that contains much of the kernel body. Functions that are not always inlined, as
 /// xsimd's, g++ inlines one by one, and reads the whole function after each, which took 32 of 52 s for four
 /// coupled oscillators. With this attribute it inlines them all before it reads.
+#if defined(MYRIAD_OUT_OF_LINE)
+#define MYRIAD_FLATTEN
+#else
 #define MYRIAD_FLATTEN __attribute__((flatten))
+#endif
 #endif
 #define MYRIAD_LARGE_FUNCTION MYRIAD_FLATTEN __attribute__((noinline))
 #define MYRIAD_RARE_FUNCTION __attribute__((noinline))
