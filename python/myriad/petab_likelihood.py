@@ -312,7 +312,8 @@ class PetabLikelihood(Objective):
         partials = derivatives([o.value, o.noise], symbols)
         if partials is None:
             raise Error(f"observable '{o.name}' has no derivatives")
-        return tuple(self._chained(o, of, symbols, run, instances, known) for of in partials)  # type: ignore[return-value]
+        of_mean, of_deviation = (self._chained(o, of, symbols, run, instances, known) for of in partials)
+        return of_mean, of_deviation
 
     def _chained(self, o: Observed, partials: Mapping[int, Node], symbols: Sequence[Any], run: Run,
                  instances: _Instances, known: dict[Any, Array]) -> Array:

@@ -90,8 +90,7 @@ class own_instance : public request_of_host<false, threads> {
 public:
     __device__ __forceinline__ own_instance(const std::int64_t size, const std::uint32_t*, unsigned long long*,
                                             const std::uint32_t* stop)
-        : request_of_host<false, threads>(stop),
-          index_(first_instance<threads>()) {
+        : request_of_host<false, threads>(stop), index_(first_instance<threads>()) {
         if (index_ >= size) index_ = -1;
     }
 

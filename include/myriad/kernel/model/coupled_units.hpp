@@ -155,8 +155,8 @@ MYRIAD_FUNCTION void sum_couplings(const Real* first, const R* published, R* sum
             MYRIAD_UNROLL
             for (int r = 0; r < count; ++r) sums[number * units + unit + r] = found[r];
         };
-        detail::each_unit<0, units, together, unrolled>(
-            [&](int unit) MYRIAD_LAMBDA { sum(constant_index<together>{}, unit); });
+        detail::each_unit<0, units, together, unrolled>([&](int unit)
+                                                            MYRIAD_LAMBDA { sum(constant_index<together>{}, unit); });
         detail::each_unit<units / together * together, units, 1, unrolled>(
             [&](int unit) MYRIAD_LAMBDA { sum(constant_index<1>{}, unit); });
     });

@@ -80,9 +80,7 @@ struct coupling_layout {
         if (shape == coupling_shape::banded) return j;
         return j < 0 ? j + units : j >= units ? j - units : j;
     }
-    MYRIAD_FUNCTION int entry(int row, int k) const {
-        return shape == coupling_shape::circulant ? k : k * units + row;
-    }
+    MYRIAD_FUNCTION int entry(int row, int k) const { return shape == coupling_shape::circulant ? k : k * units + row; }
     MYRIAD_FUNCTION bool in_matrix(int column) const { return column >= 0 && column < units; }
 };
 /// Without the mark of a type, which device code cannot use.
