@@ -263,10 +263,12 @@ TEST_CASE("progress counts the instances that are done, and all of them once, at
             told.push_back(now);
             done.push_back((std::as_const(e).phases_done() == 2).count());
         };
-        solve<cash_karp>(one_thread, e, o);
-        // On a GPU, the next chunk may have been downloaded by then.
-        if (tests::tests_cpu()) CHECK(told == done);
-        for (std::size_t k = 0; k < told.size(); ++k) CHECK(told[k] <= done[k]);
+        const auto report = solve<cash_karp>(one_thread, e, o);
+        for (std::size_t k = 0; k < told.size(); ++k) {
+            CHECK(told[k] <= done[k]);
+            // Those of a pack are counted one by one. On a GPU, the next chunk may have been downloaded by then.
+            if (tests::tests_cpu()) CHECK(done[k] - told[k] < report.lanes);
+        }
         CHECK(told.size() >= 5);
         CHECK(told.back() == 5000);
         CHECK(std::count(told.begin(), told.end(), 5000) == 1);
