@@ -86,16 +86,19 @@ struct companion {
     int event_time;  ///< the accessory with the time of the last event
     int moves_by;    ///< that with its derivative
 };
-template <class Model>
+/// Their number. Models with sensitivities alone declare them, and not users' models.
+template <class Varied>
 constexpr int n_companion_of() {
-    if constexpr (requires { Model::n_companion; }) {
-        return Model::n_companion;
+    if constexpr (requires { Varied::n_companion; }) {
+        return Varied::n_companion;
     } else {
         return 0;
     }
 }
 template <class Model>
 inline constexpr int n_companion = n_companion_of<Model>();
+template <class Varied, int i>
+inline constexpr companion companion_at = Varied::template companion_at<i>;
 
 /// Whether a type tag stands for a number, or for the model's enumeration of such components.
 template <class Model>

@@ -184,7 +184,7 @@ private:
         } else {
             slopes moved = first;
             static_for<0, n_companion<Model>>([&](auto i) MYRIAD_LAMBDA {
-                constexpr companion what = Model::template companion_at<decltype(i)::value>;
+                constexpr companion what = companion_at<Model, decltype(i)::value>;
                 const S by = s.data.accessory[what.moves_by], slope = first[what.beside].derivative / step.h;
                 const S& value = first[what.quantity].value;
                 moved[what.quantity].value =
@@ -199,7 +199,7 @@ private:
     MYRIAD_FUNCTION void each_companion(F&& function) {
         if constexpr (n_companion<Model> != 0) {
             static_for<0, n_companion<Model>>([&](auto i) MYRIAD_LAMBDA {
-                constexpr companion what = Model::template companion_at<decltype(i)::value>;
+                constexpr companion what = companion_at<Model, decltype(i)::value>;
                 if constexpr (what.beside == q && what.kind == kind)
                     function(constant_index<what.quantity>{}, s.data.accessory[what.accessory]);
             });
