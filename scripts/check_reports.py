@@ -23,7 +23,7 @@ ON_CPUS = NUMERICS + ["backends/openmp"]
 # What needs a GPU may be older, as CI has none.
 REPORTS = {
     "docs/validation.md": (r"^\* sources: (\w+)", NUMERICS, 64, "scripts/validate.sh"),
-    "docs/methods.md": (r"The figures are for commit (\w+)", ON_GPUS, 72, "scripts/method_registers.py"),
+    "docs/methods.md": (r"The figures are for commit (\w+)", ON_GPUS, 96, "scripts/method_registers.py"),
     "validation/gpu/results.csv": (r"^# sources: (\w+)", ON_GPUS, 60, "scripts/validate.sh --device cuda"),
     "benchmarks/results/h200.csv": (r"^# commit: (\w+)", ON_GPUS, 60, "scripts/gpu.sh --bench"),
     "benchmarks/results/cpu.csv": (r"^# commit: (\w+)", ON_CPUS, 130, "scripts/bench.sh"),
