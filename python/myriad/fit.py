@@ -5,7 +5,7 @@ ensemble in every iteration; what the result is worth."""
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
 
@@ -28,13 +28,15 @@ if TYPE_CHECKING:
 
 __all__ = ["Fit", "fit"]
 
+SomeObjective = TypeVar("SomeObjective", bound=Objective)
 
-class Fit:
+
+class Fit(Generic[SomeObjective]):
     """The outcome of `fit`. Arrays have one value for each start, in the order of the starts; what has no start is of
     the best one."""
 
-    def __init__(self, problem: Objective, descent: Descent, starts: Array, iterations: int) -> None:
-        self.problem = problem  #: its `LeastSquares`, or another `Objective`
+    def __init__(self, problem: SomeObjective, descent: Descent, starts: Array, iterations: int) -> None:
+        self.problem = problem  #: what was minimised: its `LeastSquares`, or another `Objective`
         values = from_logarithms(problem.free, descent.varied)
         self.loss: Array = descent.loss  #: half the sum of squares of (model - data) / sigma; infinite: no solution
         #: "converged", "iterations" if there were too few, "failed"
@@ -182,7 +184,7 @@ def _by_name(problem: Objective, values: Array) -> dict[str, Any]:
 
 def fit(model: AnyModel, data: Any, *, free: ByComponent, starts: int | ByComponent = 16,
         sweep: ByComponent | None = None, start: ByComponent | None = None, begin: float = 0.0, sigma: Any = None,
-        iterations: int = 100, tolerance: float = 1e-10, seed: int = 0, **options: Any) -> Fit:
+        iterations: int = 100, tolerance: float = 1e-10, seed: int = 0, **options: Any) -> Fit[LeastSquares]:
     """Fits a model to data by least squares from many starts.
 
     model       from `myriad.model(...)`, or another that `solve` takes with sensitivities
@@ -205,7 +207,8 @@ def fit(model: AnyModel, data: Any, *, free: ByComponent, starts: int | ByCompon
     return minimised(problem, starts, iterations, tolerance, seed)
 
 
-def minimised(problem: Objective, starts: int | ByComponent, iterations: int, tolerance: float, seed: int) -> Fit:
+def minimised(problem: SomeObjective, starts: int | ByComponent, iterations: int, tolerance: float,
+              seed: int) -> Fit[SomeObjective]:
     """The fit of a problem; arguments as of `fit`."""
     if isinstance(starts, Mapping):
         given = by_component(starts, "starts=")
