@@ -63,7 +63,7 @@ void check_limit(std::int64_t size, std::int64_t endless, const options& o) {
     const auto begin = clock_type::now();
     const auto report = myriad::solve<Method>(test_device(2), e, o);
     INFO(report);
-    CHECK(seconds_since(begin) < o.time_limit + 5);  // on a busy machine
+    CHECK(seconds_since(begin) < o.time_limit + 30);  // on a busy machine
     CHECK(report.count(status::interrupted) >= size / endless);
     CHECK(report.count(status::interrupted) + report.count(status::success) == size);
     CHECK(report.instances == size);
