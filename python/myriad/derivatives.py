@@ -123,7 +123,7 @@ def derivatives(roots: Sequence[Node], symbols: Sequence[Node]) -> list[dict[int
 
 
 def _cheap_rule(op: str) -> Callable[..., Sequence[Any]] | None:
-    """The same, with one division where a quotient and its derivatives would take three."""
+    """The derivatives of an operation by its arguments: of a quotient with one division, where the rule has three."""
     return (lambda f, a, b: (1 / b, -(a * (1 / b)) * (1 / b))) if op == "divide" else _partials.get(op)
 
 

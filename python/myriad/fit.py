@@ -38,7 +38,8 @@ class Fit(Generic[SomeObjective]):
     def __init__(self, problem: SomeObjective, descent: Descent, starts: Array, iterations: int) -> None:
         self.problem = problem  #: what was minimised: its `LeastSquares`, or another `Objective`
         values = from_logarithms(problem.free, descent.varied)
-        self.loss: Array = descent.loss  #: half the sum of squares of (model - data) / sigma; infinite: no solution
+        #: of `my.fit` half the sum of squares of (model - data) / sigma; infinite: no solution
+        self.loss: Array = descent.loss
         #: "converged", "iterations" if there were too few, "failed"
         self.status = [status_names[s] for s in descent.state]
         self.iterations: Array = descent.iterations  #: that each start took

@@ -45,7 +45,7 @@ EXPORTED XLA_FFI_Error* myriad_solve(XLA_FFI_CallFrame* frame) {
         XLA_FFI_Error_Destroy_Args all{XLA_FFI_Error_Destroy_Args_STRUCT_SIZE, nullptr, error};
         if (error != nullptr) api.XLA_FFI_Error_Destroy(&all);
     };
-    // Of a CPU, neither of which there is: an error, and the values stay.
+    // A CPU has neither: that is an error, and the values stay as they are.
     XLA_FFI_Stream_Get_Args stream{XLA_FFI_Stream_Get_Args_STRUCT_SIZE, nullptr, frame->ctx, nullptr};
     forget(api.XLA_FFI_Stream_Get(&stream));
     XLA_FFI_DeviceOrdinal_Get_Args device{XLA_FFI_DeviceOrdinal_Get_Args_STRUCT_SIZE, nullptr, frame->ctx, 0};
@@ -160,6 +160,7 @@ def register(platform: str) -> None:
 
 
 def _compile(by: _core.Compiler, source: str, folder: str) -> None:
+    """Without the library's headers, which are not prepared for it."""
     by.compile(source, folder)
 
 

@@ -165,7 +165,7 @@ private:
             facts_.blocks_per_multiprocessor = blocks;
         }
     }
-    /// A multiprocessor's share of the threads, in warps.
+    /// A multiprocessor's share of the threads, a multiple of a warp's.
     int even_block(std::int64_t size) const {
         const std::int64_t warps = (size * traits().team + 31) / 32;
         return static_cast<int>((warps + multiprocessors_ - 1) / multiprocessors_) * 32;

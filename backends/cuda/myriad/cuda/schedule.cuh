@@ -57,8 +57,8 @@ public:
     }
 
 private:
-    /// Sorting pays off if most of the work is still ahead. With fewer phases, only steps that take much longer than to
-    /// take the next instance make up for that.
+    /// Sorting pays off if most of the work is still ahead. With fewer phases a queue pays off where a step takes much
+    /// longer than fetching the next instance.
     schedule chosen(std::int64_t count, std::int64_t phases, const kernel_launcher<R>& kernel) const {
         const bool sortable = count <= most_sorted;
         if (wanted_ == schedule::automatic) {
