@@ -613,3 +613,46 @@ taken, bytes_of_samples = memory() - before, size * samples * 8 * 3
 assert 0.5 * bytes_of_samples < taken < 1.5 * bytes_of_samples, (taken, bytes_of_samples)  # the simulated GPU's own
 assert np.isfinite(all["x"]).all() and np.array_equal(all["x"], on_host(all.device["x"]))
 """, MYRIAD_SIMULATED_MEGABYTES=4096)
+
+
+ADJOINT = """
+from myriad import adjoint
+x, y = my.states("x y")
+a, b, c = my.parameters("a b c")
+model = my.model({x: a * x - b * x * y, y: b * x * y - y + c * my.exp(-x * x)},
+                 events=[my.event(x - 1.5, direction="falling", do={y: 0.5 * y + c})],
+                 stops=[my.stop([0.7], do={x: x + 0.1 * a})])
+rows = np.random.default_rng(1).uniform(0.5, 1.5, (50, 4))
+usual = dict(by=[a, b, c, x], of=[y, x], start={y: 1.0}, time=(0, 3), rtol=1e-6, atol=1e-6, adjoint=True)
+
+def gradient(device, **more):
+    weights = lambda values: np.cos(values)
+    return my.batched(model, **{**usual, "device": device, **more}).vjp(rows, weights)
+
+def close(found, expected):
+    for one, other in zip(found, expected):
+        np.testing.assert_allclose(one, other, rtol=1e-11, atol=1e-11)
+"""
+
+
+@pytest.mark.parametrize("method", ["dormand_prince_5", "rodas_5p"])
+def test_an_adjoint_on_a_gpu_has_the_gradients_of_the_cpu(run, method):
+    run(MODEL + ADJOINT + f"""
+for samples in (None, [0.0, 0.5, 0.7, 2.9, 3.0]):
+    of = dict(samples=samples, method="{method}")
+    close(gradient("cuda", **of), gradient("cpu", **of))
+""")
+
+
+def test_an_adjoint_on_a_gpu_takes_instances_in_groups_that_have_room(run):
+    run(MODEL + ADJOINT + """
+expected = gradient("cpu")
+made = my.batched(model, **usual, device="cuda")
+assert made.adjoint._most_on_gpu == 1 << 30  # more than there is
+close(made.vjp(rows, np.cos), expected)
+assert made.adjoint._most_on_gpu < 1 << 20, made.adjoint._most_on_gpu
+""", MYRIAD_SIMULATED_MEGABYTES=4)
+    run(MODEL + ADJOINT + """
+said = message(lambda: gradient(["cuda", "cpu"]))
+assert "several devices" in said and "leave out adjoint=True" in said, said
+""")

@@ -21,6 +21,7 @@ _kernels = {
     "device_program.cuh": ("myriad_integrate", "myriad_tell_facts", "myriad_sum", "myriad_find_not_finite",
                            "count_all_costs", "sum_costs", "place_by_cost"),
     "device_generate.cuh": ("myriad_generate",),
+    "device_adjoint.cuh": ("myriad_adjoint",),
     "study_program.cuh": ("fill_components", "gather_values", "reduce_values"),
 }
 

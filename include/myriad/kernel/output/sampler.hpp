@@ -110,8 +110,8 @@ private:
         }
     }
 
-    /// The state at that part of a step, or at its end, as a function of the component. Stages in shared memory are read
-    /// where they are, for what is stored alone.
+    /// The state at that part of a step, or at its end, as a function of the component. Stages in shared memory are
+    /// read where they are, for what is stored alone.
     MYRIAD_FUNCTION auto sampled_state(const step_data<Method, S, n>& step, const S& theta, const mask& at_end) const {
         if constexpr (shares_stages<Method, Model, S>) {
             return [&step, theta, at_end](int c) MYRIAD_LAMBDA {

@@ -23,7 +23,8 @@ public:
     using state = vec<S, n>;
     using data = lane_data<Model, S>;
 
-    /// Interpolants of samples and summaries may use the slope at the end of a step, which is then the first of the next.
+    /// Interpolants of samples and summaries may use the slope at the end of a step, which is then the first of the
+    /// next.
     static constexpr bool knows_end =
         (samples_trajectory<Method> || has_summaries<Model>)&&interpolates_with_slope_end<Method>;
     /// Slopes are kept if the last of a step is the first of the next. Else every trial evaluates its own, a repeated

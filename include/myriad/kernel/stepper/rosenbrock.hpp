@@ -325,7 +325,7 @@ MYRIAD_FUNCTION T rosenbrock_interpolation(const vec<S, n>& y, const Trial& tria
     static_for<0, last>([&](auto r) MYRIAD_LAMBDA {
         constexpr int term = last - 1 - decltype(r)::value;
         bend = detail::add_stages<Method, rosenbrock_row::dense, term, 0, Method::stages>(theta * bend, trial.u,
-                                                                                         component);
+                                                                                          component);
     });
     return fma(theta, fma(rest, bend, trial.y[component] - y[component]), y[component]);
 }
