@@ -143,8 +143,8 @@ void check_sums() {
         const double allowed = 8 * n * std::numeric_limits<double>::epsilon();
         CHECK(std::abs(slopes[static_cast<std::size_t>(2 * i)] -
                        (1 + 0.05 * i + cosine[i] * full[i] - sine[i] * banded[i])) <= allowed);
-        CHECK(std::abs(slopes[static_cast<std::size_t>(2 * i + 1)] - (phase[i] - lag[i] + ring[i] + all[i] + same[i])) <=
-              allowed);
+        CHECK(std::abs(slopes[static_cast<std::size_t>(2 * i + 1)] -
+                       (phase[i] - lag[i] + ring[i] + all[i] + same[i])) <= allowed);
     }
 }
 

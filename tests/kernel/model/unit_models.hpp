@@ -50,10 +50,9 @@ struct phase_oscillator {
     enum unit_parameter { speed, n_unit_parameter };
     enum publication { sine, cosine, n_publication };
     enum { full_sine, banded_cosine, ring_sine, all_round, full_cosine };
-    static constexpr myriad::coupling couplings[] = {myriad::full_coupling(sine), myriad::banded_coupling(cosine, 2),
-                                                     myriad::circulant_coupling(sine, 1),
-                                                     myriad::circulant_coupling(cosine),
-                                                     myriad::same_coupling(cosine, full_sine)};
+    static constexpr myriad::coupling couplings[] = {
+        myriad::full_coupling(sine), myriad::banded_coupling(cosine, 2), myriad::circulant_coupling(sine, 1),
+        myriad::circulant_coupling(cosine), myriad::same_coupling(cosine, full_sine)};
 
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_publication> publish(int, auto, const auto& y, const auto&) {

@@ -20,8 +20,8 @@ enum class coupling_shape : std::uint8_t {
 };
 
 /// A sum over all units: a matrix times what the units publish. Made by `full_coupling`, `banded_coupling`,
-/// `circulant_coupling` and `same_coupling`; its entries are set by `set_coupling`, on the host, and are the same for all
-/// instances.
+/// `circulant_coupling` and `same_coupling`; its entries are set by `set_coupling`, on the host, and are the same for
+/// all instances.
 struct coupling {
     int publication;               ///< number of the publication that is summed
     coupling_shape shape;          ///< which entries there are
