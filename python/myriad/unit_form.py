@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from .cpp import Body, Names, _wrap
 from .expression import Node, make, symbols_of
-from .units import of_units
+from .units import CouplingTable, of_units
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 # What a unit has by these names, beside those that begin like its own variables.
-_members = {"unit", "other", "publish", "publication", "n_publication", "n_unit_state", "couplings",
+_members = {"unit", "publish", "publication", "n_publication", "n_unit_state", "couplings",
             "threads_per_instance"}
 
 
@@ -27,7 +27,7 @@ class _NotAlike(Exception):
 
 class UnitForm:
     """Equations that are alike, as those of one unit. Its symbols of components of units are ("of_unit", (kind, name,
-    distance)), those of products of a coupling ("sum", (table, what is summed, distance of the row))."""
+    distance)), those of sums of a coupling ("sum", (table, what is summed, distance of the row))."""
 
     def __init__(self, model: Model, units: Units, names: list[str]) -> None:
         self.model, self.units, self.names = model, units, names
@@ -37,10 +37,13 @@ class UnitForm:
         #: the kind of components that each unit has, by name without number
         self.groups = {base: kind for kind, several in of_kind.items() for base in of_units(several, units.count)}
         self.roots = [self._equation(name) for name in names]
-        sums = [s for s in symbols_of(self.roots) if s.value[0] == "sum"]
-        self.sums = {s: i for i, s in enumerate(sums)}  # products of couplings
-        published = dict.fromkeys(s.value[1][1] for s in sums if s.value[1][1].op != "symbol")
-        self.published = {what: i for i, what in enumerate(published)}
+        several = dict.fromkeys(s.value[1][:2] for s in symbols_of(self.roots) if s.value[0] == "sum")
+        if {table for table, _ in several} != {t for t in model.tables if isinstance(t, CouplingTable)}:
+            raise _NotAlike
+        in_order = sorted(several, key=lambda one: model.tables.index(one[0]))
+        #: the numbers of the couplings, as (table, what is summed), in the order of the tables' entries
+        self.couplings = {one: i for i, one in enumerate(in_order)}
+        self.published = {what: i for i, what in enumerate(dict.fromkeys(what for _, what in in_order))}
 
     def _equation(self, name: str) -> Node:
         equations = dict(zip(self.model.states, self.model.rhs))
@@ -68,15 +71,15 @@ class UnitForm:
 
     def _one(self, node: Node, unit: int, n: int) -> Node:
         if node.op == "dot":
-            table, first = node.value
-            if len(node.args) != n or table.shape != (n, n):
+            table, row = node.value
+            if not isinstance(table, CouplingTable) or table.count != n:
                 raise _NotAlike
-            summed = {self._shift(a, j) for j, a in enumerate(node.args)}
+            summed = {self._shift(a, j) for j, a in zip(table.columns(row), node.args)}
             what = summed.pop()
             if summed or any(s.value[0] == "of_unit" and s.value[1][2] != 0 or s.value[0] == "sum"
                              for s in symbols_of([what])):
                 raise _NotAlike
-            return make("symbol", value=("sum", (table, what, (first // n - unit) % n)))
+            return make("symbol", value=("sum", (table, what, (row - unit) % n)))
         if node.op == "symbol":
             kind, name = node.value
             base, _, number = name.rpartition("_")
@@ -90,23 +93,37 @@ class UnitForm:
 
     def source(self, struct: str) -> str:
         """The text of a model of that name."""
-        model, n, names = self.model, self.units.count, Names(self.model)
-        names.taken |= {*self.names, "unit", "other", "published"}
+        model, n, names = self.model, self.units.count, Names(self.model, [*self.names, "unit"])
         out = ["// SPDX-License-Identifier: MIT", "// Written by Myriad's Python package from traced units.", "",
                f"struct {struct}_unit {{", f"    enum unit_state {{ {', '.join(self.names)}, n_unit_state }};"]
         if self.units.threads_per_instance is not None:
             out.append(f"    static constexpr int threads_per_instance = {self.units.threads_per_instance};")
         last = {f"{t.name}_last": f"{t.name}_last = {t.name} + {t.values.size - 1}" for t in model.tables}
+        of_couplings = {name for table, _ in self.couplings for name in (table.name, f"{table.name}_last")}
         for kind, several in model.enumerations():
-            if several and kind != "state":
-                out += ["    " + line for line in
-                        _wrap(f"enum {kind} {{ {', '.join(last.get(c, c) for c in several)}, n_{kind} }};", 0)]
+            own = [last.get(c, c) for c in several if c not in of_couplings]
+            if own and kind != "state":
+                out += ["    " + line for line in _wrap(f"enum {kind} {{ {', '.join(own)}, n_{kind} }};", 0)]
         if self.published:
             several = [f"published_{i}" for i in range(len(self.published))]
             out.append(f"    enum publication {{ {', '.join(several)}, n_publication }};")
+            declared = f"static constexpr myriad::coupling couplings[] = {{{', '.join(self._couplings())}}};"
+            out += ["    " + line for line in _wrap(declared, 0)]
             out += self._function("publish", "n_publication", self.published, names)
         out += self._function("rhs", "n_unit_state", self.roots, names)
         return "\n".join([*out, "};", f"using {struct} = myriad::coupled_units<{struct}_unit, {n}>;", ""])
+
+    def _couplings(self) -> Iterable[str]:
+        """The declarations of the couplings."""
+        with_matrix: dict[CouplingTable, int] = {}
+        for (table, what), number in self.couplings.items():
+            form, arguments = "same", [f"published_{self.published[what]}"]
+            if with_matrix.setdefault(table, number) != number:
+                arguments.append(str(with_matrix[table]))
+            else:
+                form = table.form
+                arguments += [] if table.bandwidth is None else [str(table.bandwidth)]
+            yield f"myriad::{form}_coupling({', '.join(arguments)})"
 
     def _function(self, name: str, count: str, roots: Iterable[Node], names: Names) -> list[str]:
         roots, n, lines = list(roots), self.units.count, []
@@ -121,29 +138,18 @@ class UnitForm:
             member = names.p if kind == "parameter" else f"{names.p}.{kind}"
             return f"{member}[{base}_0 + {unit}]"
 
-        def of_unit(node: Node) -> str:
+        def symbol(node: Node) -> str:
             kind, value = node.value
             if kind == "built-in":
                 return names.t
             if kind == "of_unit":
                 return component(value[0], value[1], number[value[2]])
             if kind == "sum":
-                return f"sum_{self.sums[node]}"
+                of_unit = names.y if value[2] == 0 else f"{names.y}.of({number[value[2]]})"
+                return f"{of_unit}.coupled({self.couplings[value[:2]]})"
             return f"{names.p}[{value}]" if kind == "parameter" else f"{names.p}.{kind}[{value}]"
 
-        for symbol in (s for s in symbols if s.value[0] == "sum"):
-            table, what, distance = symbol.value[1]
-            if what.op == "symbol" and what.value[0] == "of_unit":
-                kind, base, _ = what.value[1]
-                summed = component(kind, base, "other")
-            elif what.op == "symbol":
-                summed = of_unit(what)
-            else:
-                summed = f"{names.y}.of(other).published(published_{self.published[what]})"
-            total, row = of_unit(symbol), f"{names.p}.shared[{table.name} + {number[distance]} * {n}"
-            lines += [f"{names.R} {total} = {names.R}(0);", f"for (int other = 0; other < {n}; ++other)",
-                      f"    {total} = myriad::fma({names.R}({row} + other]), {summed}, {total});"]
-        body = Body(roots, names, of_unit, scalar=False)
+        body = Body(roots, names, symbol, scalar=False)
         values = [f"{names.R}({body.text(root)})" for root in roots]
         out = ["", f"template <class {names.R}>"]
         out += _wrap(f"MYRIAD_FUNCTION static myriad::vec<{names.R}, {count}> {name}([[maybe_unused]] int unit, "
@@ -163,7 +169,7 @@ def unit_form(model: Model) -> UnitForm | None:
         return None
     names = [name.rpartition("_")[0] for name in model.states[:len(model.states) // units.count]]
     if set(names) & set(model.component_names) or any(
-            name in _members or name.startswith(("unit_", "sum_", "published_")) for name in [
+            name in _members or name.startswith(("unit_", "published_")) for name in [
                 *names, *model.component_names]):
         return None
     try:

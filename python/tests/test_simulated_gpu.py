@@ -450,6 +450,53 @@ assert np.allclose(on_axis().run(device="cuda")["x_sample"], domains(samples=3).
 """)
 
 
+TEAMS = """
+import re
+def alone(model, precision, method="tsitouras_5"):  # the same unit, whose instances have one thread each
+    text, struct = model.device_source(method, precision)
+    assert "threads_per_instance = 8" in text
+    text = "#include <myriad/coupled_units.hpp>\\n" + text.replace("per_instance = 8", "per_instance = 1")
+    kinds = model.states, model.parameters, model.shared, model.shared_integers, model.accessories
+    return my.CppModel(text, struct, *kinds, model.integer_accessories, events=[e.name for e in model.events])
+
+def one_by_one(given):
+    return {s.value[1]: one for key, values in given.items()
+            for s, one in zip(key, values if isinstance(values, (list, np.ndarray)) else [values] * len(key))}
+
+def compare(model, values, start, precision, **more):
+    more = dict(time=(0, 2), rtol=1e-5, precision=precision, device="cuda", **more)
+    team = my.solve(model, values, start=start, **more)
+    assert team.report.threads_per_instance == 8
+    shared = {name: value for name, value in model.shared_values.items()}
+    single = my.solve(alone(model, precision), {**one_by_one(values), **shared}, start=one_by_one(start), **more)
+    assert single.report.threads_per_instance == 1
+    names = [*model.states, *model.accessories, *model.integer_accessories]
+    assert same(team, single, names)
+    here = my.solve(model, values, start=start, **{**more, "device": "cpu"})
+    assert all(np.allclose(team[name], here[name], rtol=1e-3, atol=1e-3) for name in names)
+    return team
+"""
+
+
+@pytest.mark.parametrize("precision", ["double", "float"])
+def test_teams_sum_the_matrices_of_units_as_one_thread_does(run, precision):
+    run(TEAMS + f"""
+n = 19
+full, row, count = np.random.default_rng(4).normal(size=(n, n)) / n, np.linspace(-0.1, 0.1, n), np.arange(n)
+banded = np.where(np.abs(np.subtract.outer(count, count)) <= 2, full, 0)
+near = np.where(np.minimum(count, n - count) <= 1, row, 0)
+units = my.units(n, threads_per_instance=8)
+x, v = units.states("x v")
+k, w = units.parameter("k"), units.shared("w")
+F, B = units.full_coupling("F", full), units.banded_coupling("B", banded, 2)
+C = units.circulant_coupling("C", np.stack([np.roll(near, i) for i in range(n)]), 1)
+D = units.circulant_coupling("D", np.stack([np.roll(row, i) for i in range(n)]))
+model = my.model({{x: v + C @ v, v: -k * x + w * (F @ np.sin(x)) + B @ v - D @ np.cos(x) + np.roll(F @ x, 1)}})
+compare(model, {{k: [np.linspace(1, 2, 7) + 0.1 * i for i in range(n)], w: np.linspace(-1, 1, n)}},
+        {{x: np.linspace(-1, 1, n), v: np.linspace(0, 1, n)}}, {precision!r})
+""")
+
+
 ENDLESS = """
 import signal, threading, time
 end = np.ones(400)

@@ -144,6 +144,31 @@ def test_units_that_are_alike_are_written_as_one_unit_for_gpus():
         np.testing.assert_allclose(other[name], one[name], rtol=1e-11, atol=1e-11)
 
 
+@pytest.mark.parametrize("precision, allowed", [("double", 1e-11), ("float", 1e-4)])
+def test_matrices_of_units_are_the_couplings_of_cpp(precision, allowed):
+    """Of every form; one matrix for two sums is declared once."""
+    units = my.units(n)
+    x, y = units.states("x y")
+    F, B = units.full_coupling("F", full / n), units.banded_coupling("B", banded / n, 2)
+    C, D = units.circulant_coupling("C", ring, 1), units.circulant_coupling("D", all_round / n)
+    model = my.model({x: C @ x - x + F @ np.sin(y), y: B @ y + D @ np.sin(y) + F @ x - y})
+    text = unit_form(model).source("ring")
+    declared = " ".join(text.partition("couplings[] = {")[2].partition("}")[0].split())
+    assert declared == ("myriad::circulant_coupling(published_0, 1), myriad::full_coupling(published_1), "
+                        "myriad::same_coupling(published_0, 1), myriad::banded_coupling(published_2, 2), "
+                        "myriad::circulant_coupling(published_1)")
+    assert "for (" not in text and "p.shared" not in text
+    values = model.shared_values
+    assert (values["B[3,5]"], values["C[0,11]"], values["F[7,2]"]) == (banded[3, 5] / n, near[11], full[7, 2] / n)
+    as_units = my.CppModel("#include <myriad/coupled_units.hpp>\n" + text, "ring", model.states, [], model.shared)
+    more = dict(time=(0, 1), rtol=1e-6, precision=precision, device="cpu")
+    one = my.solve(model, start={x: x0, y: v0}, **more)
+    start = {s.value[1]: v for s, v in zip((*x, *y), (*x0, *v0))}
+    other = my.solve(as_units, {**values}, start=start, **more)
+    for name in model.states:
+        np.testing.assert_allclose(other[name], one[name], rtol=allowed, atol=allowed)
+
+
 def test_units_say_how_many_threads_of_a_gpu_integrate_an_instance():
     assert "threads_per_instance = 16;" in alike(threads_per_instance=16)[0].device_source("cash_karp", "double")[0]
     few, _ = alike(4)
@@ -161,7 +186,7 @@ def test_units_with_more_than_equations_are_written_out_for_gpus(more):
     assert unit_form(model) is None and model.device_source("cash_karp", "double") == model.source()
 
 
-@pytest.mark.parametrize("name", ["publish", "sum_3", "unit", "threads_per_instance", "x"])
+@pytest.mark.parametrize("name", ["publish", "published_3", "unit", "threads_per_instance", "x"])
 def test_units_with_names_that_a_unit_has_itself_are_written_out_for_gpus(name):
     x, k = my.units(20).state("x"), my.parameter(name)
     assert unit_form(my.model({x: -k * x})) is None
