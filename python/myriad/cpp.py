@@ -514,7 +514,7 @@ class Writer:
         assigned: set[int] = set()
         for target, value in targets:
             if body.reads(value) & assigned:
-                early[id(target)] = body.early(value, "next_" + target.value[1])
+                early[id(target)] = body.early(value, "next_" + self.title(target))
             assigned.add(id(target))
         conditions = {action: body.early(value, "ends") if body.reads(value) & assigned else body.text(value)
                       for action, value in ends.items()}
@@ -531,6 +531,10 @@ class Writer:
             statement = f"{self.in_hook(target)} {operator} {written};"
             body.lines.append(statement if only_if is None else f"if ({body.text(only_if)}) {statement}")
         return body.lines, conditions
+
+    def title(self, target: Node) -> str:
+        """The name of a component."""
+        return str(target.value[1])
 
     @staticmethod
     def plan(target: Node, value: Node, scalar: bool) -> tuple[Node | None, str, Node]:
