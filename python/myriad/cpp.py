@@ -90,7 +90,7 @@ class Names:
     the names in `others`, has that name."""
 
     def __init__(self, model: Model, others: Iterable[str] = ()) -> None:
-        self.taken = {*model.component_names, *others, "i", "j"}
+        self.taken = {*model.component_names, *others, "i", "j", "r"}
         self.y = self._free("y", "s", "u", "state_")
         self.p = self._free("p", "in", "inputs")
         self.t = self._free("t", "time", "t_")
@@ -207,10 +207,16 @@ class Body:
         self.lines.append(f"myriad::vec<{kind}, {last - first + 1}> {product};")
         row_number, rows = f"({first} + i)" if first else "i", f"for (int i = 0; i < {last - first + 1}; ++i)"
         entry = f"{self.shared}[{table.name}"
-        if of_units and table.form == "full":  # column by column
-            self.lines += [f"{rows} {product}[i] = {entry} + {row_number}] * {vector}[0];",
-                           f"for (int j = 1; j < {n}; ++j)",
-                           f"    {rows} {product}[i] += {entry} + j * {n} + {row_number}] * {vector}[j];"]
+        if of_units and table.form == "full":  # four neighbouring rows at once, of which additions need not wait
+            first, number, each = 0, self._name("row"), "for (int r = 0; r < 4; ++r)"
+            self.lines[-1] = f"myriad::vec<{kind}, {n}> {product};"
+            self.lines += [f"for (int i = 0; i < {n}; i += 4) {{",
+                           f"    const int {number} = i < {n - 4} ? i : {n - 4};",
+                           f"    myriad::vec<{kind}, 4> {total};",
+                           f"    {each} {total}[r] = {entry} + {number} + r] * {vector}[0];",
+                           f"    for (int j = 1; j < {n}; ++j)",
+                           f"        {each} {total}[r] += {entry} + j * {n} + {number} + r] * {vector}[j];",
+                           f"    {each} {product}[{number} + r] = {total}[r];", "}"]
         else:
             begin, start, at = (entry, row_number, f"({row_number} + j) % {n}") if of_units else (
                 f"{entry} + {row_number} * {n}", "0", "j")
@@ -514,7 +520,7 @@ class Writer:
         assigned: set[int] = set()
         for target, value in targets:
             if body.reads(value) & assigned:
-                early[id(target)] = body.early(value, "next_" + target.value[1])
+                early[id(target)] = body.early(value, "next_" + self.title(target))
             assigned.add(id(target))
         conditions = {action: body.early(value, "ends") if body.reads(value) & assigned else body.text(value)
                       for action, value in ends.items()}
@@ -531,6 +537,10 @@ class Writer:
             statement = f"{self.in_hook(target)} {operator} {written};"
             body.lines.append(statement if only_if is None else f"if ({body.text(only_if)}) {statement}")
         return body.lines, conditions
+
+    def title(self, target: Node) -> str:
+        """The name of a component."""
+        return str(target.value[1])
 
     @staticmethod
     def plan(target: Node, value: Node, scalar: bool) -> tuple[Node | None, str, Node]:

@@ -24,7 +24,7 @@ from .parse import from_sympy, parse, parse_equations, sympy_name
 from .table import tables_of
 from .trigger import Edge, Queue, Sides, Trigger, check, edges_of, keep_values, needs_queue
 from .unit_form import unit_form
-from .units import CouplingTable, only_units, spread, together
+from .units import CouplingTable, only_units, spread, together, unit_by_unit
 from .whole_numbers import check_constants
 
 if TYPE_CHECKING:
@@ -371,6 +371,9 @@ class Model(kinds.ComponentNames):
             what = f"event {one.name}"
             one.function = to_real(self._real(self._value(given.function, what), what))
             one.do = self._assignments(given.do, what, line=given.line)
+        if self.units_of_states is not None:  # one unit after the other
+            order = unit_by_unit([str(one.name) for one in made], self.units_of_states.count)
+            made.sort(key=lambda one: order.index(str(one.name)))
         return made
 
     def _stops(self, stops: Stop | Sequence[Stop]) -> list[Stop]:
@@ -536,6 +539,8 @@ class Model(kinds.ComponentNames):
         if self.units_of_states is not None:
             for kind in ("parameter", "shared"):
                 components[kind] = together(components[kind], self.units_of_states.count)
+            for kind in kinds.accessories:
+                components[kind] = unit_by_unit(components[kind], self.units_of_states.count)
         missing = [n for n in components["state"] if n not in self.states]
         if missing:
             symbol = next(s for s in found + declared if s.value == ("state", missing[0]))

@@ -259,6 +259,15 @@ def together(names: Iterable[str], count: int) -> list[str]:
     return list(dict.fromkeys(one for name in names for one in every.get(first.get(name, ""), [name])))
 
 
+def unit_by_unit(names: Iterable[str], count: int) -> list[str]:
+    """The same names, with components that each of so many units has behind the others, one unit after the other."""
+    names = list(names)
+    those = {f"{base}_{i}" for base in of_units(names, count) for i in range(count)}
+    of_each = [name for name in together(names, count) if name in those]
+    return [*(name for name in names if name not in those), *(
+        name for i in range(count) for name in of_each[i::count])]
+
+
 def spread(given: Mapping[Any, Any], what: str, line: tuple[str, int] | None) -> dict[Any, Any]:
     """Equations, assignments or values by component, with those of all units one by one."""
     from .model import Summary

@@ -451,49 +451,79 @@ assert np.allclose(on_axis().run(device="cuda")["x_sample"], domains(samples=3).
 
 
 TEAMS = """
-import re
-def alone(model, precision, method="tsitouras_5"):  # the same unit, whose instances have one thread each
-    text, struct = model.device_source(method, precision)
-    assert "threads_per_instance = 8" in text
-    text = "#include <myriad/coupled_units.hpp>\\n" + text.replace("per_instance = 8", "per_instance = 1")
-    kinds = model.states, model.parameters, model.shared, model.shared_integers, model.accessories
-    return my.CppModel(text, struct, *kinds, model.integer_accessories, events=[e.name for e in model.events])
+count = np.arange(n)
+units = my.units(n, threads_per_instance=threads)
+x, v = units.states("x v")
+k, w, strength = units.parameter("k"), units.shared("w"), my.parameter("strength")
+around = units.circulant_coupling("A", np.stack([np.roll([0, 0.2, *[0] * (n - 3), 0.1], i) for i in count]), 1)
+sets = {k: [np.linspace(1, 2, 7) + 0.1 * i for i in range(n)], w: np.linspace(-1, 1, n)}
 
-def one_by_one(given):
-    return {s.value[1]: one for key, values in given.items()
-            for s, one in zip(key, values if isinstance(values, (list, np.ndarray)) else [values] * len(key))}
-
-def compare(model, values, start, precision, **more):
-    more = dict(time=(0, 2), rtol=1e-5, precision=precision, device="cuda", **more)
-    team = my.solve(model, values, start=start, **more)
-    assert team.report.threads_per_instance == 8
-    shared = {name: value for name, value in model.shared_values.items()}
-    single = my.solve(alone(model, precision), {**one_by_one(values), **shared}, start=one_by_one(start), **more)
-    assert single.report.threads_per_instance == 1
-    names = [*model.states, *model.accessories, *model.integer_accessories]
-    assert same(team, single, names)
-    here = my.solve(model, values, start=start, **{**more, "device": "cpu"})
-    assert all(np.allclose(team[name], here[name], rtol=1e-3, atol=1e-3) for name in names)
+def compare(model, values=sets, precision="double", allowed=1e-3, **more):  # by teams, by one thread each, on the CPU
+    start = {x: np.linspace(-1, 1, n), v: np.linspace(0, 1, n)}
+    more = dict(start=start, time=(0, 2), rtol=1e-5, precision=precision, **more)
+    names = [*model.states, *model.parameters, *model.accessories, *model.integer_accessories]
+    team, here = (my.solve(model, values, device=device, **more) for device in ("cuda", "cpu"))
+    usual = my.Model.device_source
+    def of_one_thread(*asked):
+        text, struct = usual(*asked)
+        return text.replace(f"threads_per_instance = {threads}", "threads_per_instance = 1"), struct
+    my.Model.device_source = of_one_thread
+    alone = my.solve(model, values, device="cuda", **more)
+    my.Model.device_source = usual
+    assert (team.report.threads_per_instance, alone.report.threads_per_instance) == (threads, 1)
+    assert same(team, alone, names) and np.array_equal(team.status, alone.status)
+    assert np.array_equal(team.steps("evaluations"), alone.steps("evaluations"))
+    wrong = [name for name in names if not np.allclose(team[name], here[name], rtol=allowed, atol=allowed)]
+    assert not wrong, (wrong, [(team[name], here[name]) for name in wrong[:2]])
     return team
 """
 
 
 @pytest.mark.parametrize("precision", ["double", "float"])
 def test_teams_sum_the_matrices_of_units_as_one_thread_does(run, precision):
-    run(TEAMS + f"""
-n = 19
-full, row, count = np.random.default_rng(4).normal(size=(n, n)) / n, np.linspace(-0.1, 0.1, n), np.arange(n)
-banded = np.where(np.abs(np.subtract.outer(count, count)) <= 2, full, 0)
-near = np.where(np.minimum(count, n - count) <= 1, row, 0)
-units = my.units(n, threads_per_instance=8)
-x, v = units.states("x v")
-k, w = units.parameter("k"), units.shared("w")
-F, B = units.full_coupling("F", full), units.banded_coupling("B", banded, 2)
-C = units.circulant_coupling("C", np.stack([np.roll(near, i) for i in range(n)]), 1)
-D = units.circulant_coupling("D", np.stack([np.roll(row, i) for i in range(n)]))
-model = my.model({{x: v + C @ v, v: -k * x + w * (F @ np.sin(x)) + B @ v - D @ np.cos(x) + np.roll(F @ x, 1)}})
-compare(model, {{k: [np.linspace(1, 2, 7) + 0.1 * i for i in range(n)], w: np.linspace(-1, 1, n)}},
-        {{x: np.linspace(-1, 1, n), v: np.linspace(0, 1, n)}}, {precision!r})
+    run("n, threads = 19, 8" + TEAMS + f"""
+full, row = np.random.default_rng(4).normal(size=(n, n)) / n, np.linspace(-0.1, 0.1, n)
+F = units.full_coupling("F", full)
+B = units.banded_coupling("B", np.where(np.abs(np.subtract.outer(count, count)) <= 2, full, 0), 2)
+C = units.circulant_coupling("C", np.stack([np.roll(row, i) for i in count]))
+force = w * (F @ np.sin(x)) + B @ v - C @ np.cos(x) + np.roll(F @ x, 1)
+compare(my.model({{x: v + around @ v, v: force - k * x}}), precision={precision!r})
+""")
+
+
+def test_teams_call_the_hooks_of_units_and_find_their_events_and_summaries_as_one_thread_does(run):
+    run("n, threads = 3, 2" + TEAMS + """
+top, when, work, last = (units.accessory(name) for name in ("top", "when", "work", "last"))
+turns, total, seen = units.integer_accessory("turns"), my.accessory("total"), my.integer_accessory("seen")
+def turned(i):
+    return {v[i]: 0.9 * v[i], v[(i + 1) % n]: v[(i + 1) % n] + 0.01 * x[i], turns[i]: turns[i] + 1, seen: seen + 1,
+            last[i]: my.time}
+model = my.model(
+    {x: v, v: strength * (around @ x) - k * x - 0.02 * last * v + w * my.cos(3 * my.time)},
+    accessories={top: my.phase_maximum(x * x), when: my.time_of_maximum(x * x), last: 0, turns: 0,
+                 work: my.integral(np.roll(x, 1) * v), seen: 0, total: None},
+    events=[*units.events(v, name="turn", direction="falling", do=turned),
+            *units.events(x - 0.1 - 0.1 * last, name="rise", direction="rising", tolerance=1e-6,
+                          do=lambda i: {k[i]: 1.01 * k[i]})],
+    stops=my.stop(0.3, every=0.4, do={v: v + 0.05, strength: strength * 0.9}),
+    initialise={v: v + 0.1}, after_step={last: 0.999 * last, my.end_phase: seen >= 4},
+    finalise={total: sum(x), v: 0.5 * v + x})
+team = compare(model, {**sets, strength: 0.4}, allowed=0.01)
+assert set(team["seen"] >= 4) == {True, False} and (team["strength"] < 0.4).all()
+assert sum((team[f"k_{i}"] > sets[k][i]).any() for i in range(n)) > 1
+""")
+
+
+def test_studies_generate_the_instances_of_units_that_teams_integrate(run):
+    run("n, threads = 19, 8" + TEAMS + """
+first = units.accessory("first")
+drawn = {x: my.instance * 0.1 - 0.5, v: my.uniform(-1, 1), k: my.normal(2, 0.1), strength: my.uniform()}
+model = my.model({x: v, v: strength * (around @ x) - k * x}, initialise={first: x}, generate=drawn)
+assert "coupled_units" in model.device_source("tsitouras_5", "double")[0]
+kept = [x[0], x[18], k[3], first[18], strength]
+team, here = (my.study(model, draws=50, time=(0, 1), rtol=1e-8, keep=kept).run(device=d) for d in ("cuda", "cpu"))
+assert all(np.allclose(team[name], here[name], rtol=1e-6, atol=1e-6) for name in team.names)
+assert len(set(team["k_3_end"])) == 50 and np.array_equal(team["first_18_end"], np.arange(50) * 0.1 - 0.5)
 """)
 
 

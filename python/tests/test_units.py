@@ -177,10 +177,34 @@ def test_units_say_how_many_threads_of_a_gpu_integrate_an_instance():
     assert alone.device_source("cash_karp", "double") == alone.source()
 
 
+def test_hooks_events_and_summaries_of_units_are_those_of_one_unit_for_gpus():
+    units = my.units(20)
+    x, v = units.states("x v")
+    top, count, total = units.accessory("top"), units.integer_accessory("count"), my.accessory("total")
+    model = my.model(
+        {x: v, v: -x}, accessories={top: my.phase_maximum(x), count: 0, total: 0}, after_step={my.end_phase: x[2] > 9},
+        events=[*units.events(v, name="turn", do=lambda i: {count[i]: count[i] + 1, v[(i + 1) % 20]: -v[(i + 1) % 20]}),
+                *units.events(x, name="pass")],
+        stops=my.stop(1.0, do={v: 2 * v, total: x[0] + x[1]}), finalise={x: x + v, v: v - x},
+        generate={x: my.uniform()})
+    assert model.accessories[:2] == ["total", "top_0"]
+    assert [e.name for e in model.events[:3]] == ["turn_0", "pass_0", "turn_1"]
+    text = model.device_source("cash_karp", "double")[0]
+    for written in ("enum unit_event { turn, pass, n_unit_event };", "{observed_x, myriad::over_phase::maximum, top}",
+                    "if (lane.of(2).y[x] > 9) wanted = myriad::action::end_phase;", "if (event == turn) {",
+                    "lane.of(unit_1).y[v] = -lane.of(unit_1).y[v];", "lane.unit_integer_accessory[count] = myriad::",
+                    "lane.accessory[total] = lane.of(0).y[x] + lane.of(1).y[x];", "instance.y[38] = uniform"):
+        assert written in text, written
+    assert text.count("lane.y[x] += lane.y[v];") == 1 and "next_v" in text  # from what was there before
+
+
 @pytest.mark.parametrize("more", [
-    lambda x: dict(events=[my.event(x[0])]), lambda x: dict(finalise={x[0]: 1}), lambda x: dict(stops=my.stop(1.0)),
-    lambda x: dict(accessories={my.accessory("top"): my.phase_maximum(x[0])}), lambda x: dict(generate={x[0]: 1})])
-def test_units_with_more_than_equations_are_written_out_for_gpus(more):
+    lambda x: dict(events=[my.event(x[0])]), lambda x: dict(finalise={x[0]: 1}),
+    lambda x: dict(finalise={x: np.roll(x, 1)}),
+    lambda x: dict(accessories={my.accessory("top"): my.phase_maximum(x[0])}),
+    lambda x: dict(initialise={my.accessory("a"): x[0], x: my.accessory("a")}),
+    lambda x: dict(triggers=my.trigger(x[0] > 1, do={x[0]: 0}))])
+def test_units_whose_hooks_are_not_alike_are_written_out_for_gpus(more):
     x = my.units(20).state("x")
     model = my.model({x: -x}, **more(x))
     assert unit_form(model) is None and model.device_source("cash_karp", "double") == model.source()
