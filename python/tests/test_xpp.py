@@ -204,3 +204,16 @@ def test_a_compiled_model_agrees():
     runs = [solved(text, {"I": [1.2, 1.5]}, interpreted=interpreted) for interpreted in (True, False)]
     for name in ("v", "u", "w"):
         np.testing.assert_allclose(runs[0][name], runs[1][name], rtol=1e-9, atol=1e-9)
+
+
+def test_a_pulse_in_time_is_not_passed_over():
+    text = """p on=5,off=5.001,per=3,since=-100
+x'=heav(t-on)-heav(t-off)
+y'=mod(t,per)<.001
+z'=(t>on)*(t<off)
+w'=if((t-since)>2)then(if((t-since)<2.001)then(1)else(0))else(0)
+global 1 {t-6} {since=t}
+"""
+    run = solved(text, time=(0, 10), samples=None, rtol=1e-6)
+    for name, area in (("x", 0.001), ("y", 0.004), ("z", 0.001), ("w", 0.001)):
+        np.testing.assert_allclose(run[name], area, rtol=1e-7)
