@@ -211,6 +211,10 @@ class _File:
         if statement and kind:
             self._statement(line, kind, statement[2].strip())
             return
+        if text.split()[0] == "only":  # which says what is plotted
+            return
+        if re.search(r"\bint\s*[\[{]", text):
+            line.refuse("integral equations are not supported")
         if re.match(r"0\s*=", text):
             line.refuse("algebraic equations are not supported")
         if re.match(r"[a-z]\w*\s*\(\s*t\s*\+\s*1\s*\)\s*=", text):
@@ -241,8 +245,6 @@ class _File:
     def _of_arguments(self, line: _Line, name: str, arguments: str, value: str) -> None:
         if arguments.strip() == "0":
             self.parts.initial[name] = (line, value)
-        elif arguments.strip() == "t":
-            line.refuse("integral equations are not supported")
         else:
             wanted = [a.strip() for a in arguments.split(",")]
             if not all(re.fullmatch(r"[a-z]\w*", a) for a in wanted):
@@ -300,7 +302,8 @@ class _File:
         if not found or int(found[1]) not in (-1, 0, 1):
             line.refuse("an event is written global sign {condition} {name=formula; ...}, with the sign 1 or -1")
         if int(found[1]) == 0:
-            line.refuse("an event of the sign 0, where a condition is zero without a change of sign, is not supported")
+            line.refuse("an event of the sign 0, where a condition is zero without a change of sign, is not supported: "
+                        "give 1 for one that rises through zero, -1 for one that falls")
         resets = []
         for reset in filter(None, (r.strip() for r in found[3].split(";"))):
             parts = re.fullmatch(r"([a-z]\w*)\s*=(.*)", reset)
@@ -338,7 +341,7 @@ class XppModel(Model):
         states = {n: sym.symbol("state", self._component(n)) for n in parts.equations}
         parameters = {n: sym.symbol("parameter", self._component(n)) for n in parts.parameters}
         names = Names()
-        names.states = list(states)
+        names.series = [list(states), list(parts.quantities)]
         names.values = {"t": sym.time, "pi": constant(np.pi), **{n: constant(v) for n, v in parts.numbers.items()},
                         **parameters, **states}
         names.functions = {n: (arguments, body) for n, (_, arguments, body) in parts.functions.items()}
@@ -392,8 +395,8 @@ class XppModel(Model):
                parameters: dict[str, Any]) -> Event:
         """Its resets one after the other, each with the states that those before it have set."""
         known = Names()
-        known.values, known.functions, known.tables, known.states = (
-            dict(names.values), names.functions, names.tables, names.states)
+        known.values, known.functions, known.tables, known.series = (
+            dict(names.values), names.functions, names.tables, names.series)
         function = _in_line(one.line, one.condition, names)
         do: dict[Any, Any] = {}
         for name, text in one.resets:
