@@ -38,7 +38,7 @@ class _Parts:
         self._assigned = {t for _, assignments in model._hooks for t, _ in assignments}
         self._fixed: dict[Node, bool] = {}
         self._functions = functions
-        divided = _rebuilt(rhs, self._by_reciprocal)
+        divided = rebuilt(rhs, self._by_reciprocal)
         order = walk([*divided, *functions])
         used = {a for node in order if not self._is_stored(node) for a in node.args} | {*divided, *functions}
         saved = {node: work([node]) for node in order if node in used and self._is_stored(node)}
@@ -49,7 +49,7 @@ class _Parts:
             self._accessories[node] = sym.symbol("accessory", taken[-1])
         self.values = {accessory: node for node, accessory in self._accessories.items()}
         # Where there was no room for a reciprocal, the division stays.
-        self._rhs = _rebuilt(rhs, lambda node: self._by_reciprocal(node, self._accessories))
+        self._rhs = rebuilt(rhs, lambda node: self._by_reciprocal(node, self._accessories))
 
     def _is_fixed(self, node: Node) -> bool:
         """Whether an expression follows from constants that nothing changes."""
@@ -86,10 +86,10 @@ class _Parts:
         return self._with_accessories(self._functions)
 
     def _with_accessories(self, roots: list[Expression]) -> list[Expression]:
-        return _rebuilt(roots, lambda node: node, self._accessories)
+        return rebuilt(roots, lambda node: node, self._accessories)
 
 
-def _rebuilt(roots: list[Expression], changed: Callable[[Node], Any],
+def rebuilt(roots: list[Expression], changed: Callable[[Node], Any],
              known: dict[Node, Node] | None = None) -> list[Expression]:
     """Expressions with each operation as `changed` gives it, and those that are known replaced."""
     made: dict[Node, Any] = {}
@@ -105,7 +105,7 @@ def _rebuilt(roots: list[Expression], changed: Callable[[Node], Any],
 
 def substituted(expression: Expression, values: Mapping[Any, float]) -> Expression:
     """An expression with the values of some symbols in their place."""
-    return _rebuilt([expression], lambda node: node, {s: constant(float(v)) for s, v in values.items()})[0]
+    return rebuilt([expression], lambda node: node, {s: constant(float(v)) for s, v in values.items()})[0]
 
 
 def _room(model: Model) -> int:

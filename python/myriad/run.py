@@ -231,7 +231,7 @@ class Run(Mapping):
             return self[self._components.aliases[name]]
         if name in self._components.outputs:
             return self._output(self._components.outputs[name])
-        raise KeyError(f"there is no {name!r}: the model has {', '.join(self._components.place)}")
+        raise KeyError(f"there is no {name!r}: the model has {', '.join(self._names())}")
 
     def _times(self) -> Array:
         """The recorded times, or the times of the samples."""
@@ -290,8 +290,8 @@ class Run(Mapping):
 
     def _names(self) -> list[str]:
         """The names of all components that have results, and of recorded times."""
-        tables = self._components.tables
-        return list(dict.fromkeys([*(n for n in self._components.place if n not in tables), *self._recorded,
+        without = {*self._components.tables, *self._components.hidden}
+        return list(dict.fromkeys([*(n for n in self._components.place if n not in without), *self._recorded,
                                    *self._components.outputs]))
 
     def __iter__(self) -> Iterator[str]:

@@ -19,6 +19,7 @@ from .sbml_math import Refused
 from .sbml_reduce import Reduction
 from .sbml_semantics import Semantics
 from .sbml_units import Units
+from .time_switches import TimeSwitches
 
 if TYPE_CHECKING:
     from .hints import Names, Path
@@ -92,7 +93,7 @@ class SbmlModel(Model):
             equations = {sym.symbol("state", semantics.component_name("nothing")): constant(0.0)}
         outputs = _outputs(semantics)
         for given in semantics.swept or ():
-            known = [*semantics.quantities, *semantics.local_names]
+            known = [*(n for n, q in semantics.quantities.items() if not q.changes), *semantics.local_names]
             if given not in known:
                 raise unknown(given, known, "constant of the file that parameters= can name")
         happening = Events(semantics, next(iter(equations)))
@@ -104,6 +105,8 @@ class SbmlModel(Model):
             for one in happening.events:
                 one.do = reduction.of(one.do)
                 one.function, = reduction.of({0: one.function}).values()
+        switches = TimeSwitches(equations, happening.events, happening.initialise, semantics.new_name)
+        equations, happening.initialise = switches.equations, switches.initialise
         actions = [e for one in happening.events for e in (one.function, *one.do.values())]
         needed = set(symbols_of([*equations.values(), *defaults.values(), *actions, *happening.initialise.values()]))
         constants: dict[Any, float] = {}
@@ -121,8 +124,9 @@ class SbmlModel(Model):
         declared += reduction.parameters if reduction is not None else []
         name = _suffixed(semantics.names.values(), semantics.component_name(name))
         super().__init__(equations, happening.events, None, happening.initialise, None, None, None, None, declared, (),
-                         name)
+                         name, switches.stops)
         self.line = users_line()
+        self.hidden, self.jumps_to_miss = frozenset(self.accessories), switches.unknown
         self.constants = constants
         self.defaults: dict[str, Any] = {**self.shared_values}
         self.defaults |= {n: e for n, e in defaults.items() if n in self.states or n in self.parameters}

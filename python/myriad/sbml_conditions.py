@@ -44,17 +44,34 @@ _reverse = {"less": "greater_equal", "less_equal": "greater", "greater": "less_e
             "equal": "not_equal", "not_equal": "equal"}
 
 
+_mirrored = {"less": "greater", "less_equal": "greater_equal", "greater": "less", "greater_equal": "less_equal"}
+
+
+def complements(comparison: Any) -> list[Any]:
+    """The comparisons that hold where that one does not."""
+    a, b = comparison.args
+    reverse = _reverse[comparison.op]
+    return [compare(reverse, a, b), compare(_mirrored.get(reverse, reverse), b, a)]
+
+
 def comparisons_alone(condition: Any, where: str, is_still: Callable[[Any], bool], as_it_is: bool = True) -> Any:
-    """A condition of comparisons, `and` and `or`, without `not`. One by == of what `is_still` tells to change at other
-    times than events too holds for an instant; one by != fails for an instant, and is refused."""
+    """A condition of comparisons, `and` and `or`, without `not`. One by != that fails for an instant is refused."""
+    if condition.op == "truth":
+        return condition if as_it_is else opposite(condition)
     if condition.op == "not":
         return comparisons_alone(condition.args[0], where, is_still, not as_it_is)
     if condition.op in ("and", "or"):
         parts = [comparisons_alone(a, where, is_still, as_it_is) for a in condition.args]
         return both(*parts) if (condition.op == "and") is as_it_is else either(*parts)
     if condition.op in _reverse:
+        for i, side in enumerate(condition.args):
+            if side.op == "select":  # a piecewise compared: the comparison of the piece that is chosen
+                chosen, a, b = side.args
+                pieces = [compare(condition.op, *(piece if j == i else other for j, other in enumerate(condition.args)))
+                          for piece in (a, b)]
+                return comparisons_alone(choose(chosen, *pieces), where, is_still, as_it_is)
         wanted = condition if as_it_is else compare(_reverse[condition.op], *condition.args)
-        if wanted.op != "not_equal" or is_still(wanted):
+        if wanted.op != "not_equal" or not is_for_an_instant(wanted, is_still):
             return wanted
     raise Refused(f"{where}: its trigger is no combination of ==, <, <=, > and >=")
 
@@ -73,22 +90,42 @@ def with_values(condition: Any, values: dict[Any, Any]) -> Any:
     return values.get(condition, condition)
 
 
-def function_of(condition: Any) -> Any:
+def function_of(condition: Any, is_still: Callable[[Any], bool]) -> Any:
     """A function that is positive where a condition holds and negative where it does not."""
-    if condition.op in ("equal", "not_equal"):
-        return choose(condition, constant(math.inf), constant(-math.inf))
     if condition.op in ("and", "or"):
-        return ex.make("min" if condition.op == "and" else "max", tuple(function_of(a) for a in condition.args))
+        sides = tuple(function_of(a, is_still) for a in condition.args)
+        return ex.make("min" if condition.op == "and" else "max", sides)
     a, b = condition.args if condition.op.startswith("greater") else condition.args[::-1]
+    if condition.op in ("equal", "not_equal") or not is_still(condition) and _only_jumps(condition, is_still):
+        return choose(condition, constant(math.inf), constant(-math.inf))  # as a - b may be zero for a while
     return subtract(a, b)
+
+
+def _only_jumps(comparison: Any, is_still: Callable[[Any], bool]) -> bool:
+    """Whether the sides of a comparison are constant between jumps, as floor(time) is."""
+    waiting = list(comparison.args)
+    while waiting:
+        part = waiting.pop()
+        if part.op in ("floor", "rint") or part.type == ex.condition or is_still(part):
+            continue
+        if part.op == "symbol":
+            return False
+        waiting += part.args
+    return True
+
+
+def is_for_an_instant(comparison: Any, is_still: Callable[[Any], bool]) -> bool:
+    """Whether a comparison by == can hold, or one by != fail, for an instant alone. `is_still` tells what changes at
+    events alone."""
+    return comparison.op in ("equal", "not_equal") and not _only_jumps(comparison, is_still)
 
 
 def functions_of(condition: Any, is_still: Callable[[Any], bool]) -> list[Any]:
     """The functions that rise through zero where a comparison begins to hold."""
-    if condition.op == "equal" and not is_still(condition):
+    if condition.op == "equal" and is_for_an_instant(condition, is_still):
         a, b = condition.args
         return [subtract(a, b), subtract(b, a)]
-    return [function_of(condition)]
+    return [function_of(condition, is_still)]
 
 
 def never(condition: Any) -> bool:

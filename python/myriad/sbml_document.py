@@ -10,7 +10,7 @@ from .errors import Error
 from .sbml_math import Refused
 
 
-_unknown_unit = 10313  # the number of libsbml's error of a reference to a unit that is not there
+_harmless = 1002, 10313  # the numbers of libsbml's errors that no encoding is named, and of a unit that is not there
 
 
 def library() -> Any:
@@ -53,18 +53,20 @@ def read(source: Any) -> tuple[Any, Any]:
 
 def _check(libsbml: Any, document: Any) -> None:
     """Refuses what is no valid SBML. Units are not checked: no value depends on them."""
-    if document.getNumErrors(libsbml.LIBSBML_SEV_ERROR) + document.getNumErrors(libsbml.LIBSBML_SEV_FATAL) == 0:
+    if not _errors(libsbml, document):
         for category in (libsbml.LIBSBML_CAT_UNITS_CONSISTENCY, libsbml.LIBSBML_CAT_MODELING_PRACTICE,
                          libsbml.LIBSBML_CAT_SBO_CONSISTENCY):
             document.setConsistencyChecks(category, False)
         document.checkConsistency()
-    for i in range(document.getNumErrors()):
-        error = document.getError(i)
-        if error.getErrorId() == _unknown_unit:
-            continue
-        if error.getSeverity() in (libsbml.LIBSBML_SEV_ERROR, libsbml.LIBSBML_SEV_FATAL):
-            said = " ".join(error.getMessage().split())
-            raise Refused(f"line {error.getLine()} is no valid SBML: {said}")
+    for error in _errors(libsbml, document)[:1]:
+        raise Refused(f"line {error.getLine()} is no valid SBML: {' '.join(error.getMessage().split())}")
+
+
+def _errors(libsbml: Any, document: Any) -> list[Any]:
+    for number in _harmless:
+        document.getErrorLog().removeAll(number)  # which libsbml would stop at
+    errors = [document.getError(i) for i in range(document.getNumErrors())]
+    return [e for e in errors if e.getSeverity() in (libsbml.LIBSBML_SEV_ERROR, libsbml.LIBSBML_SEV_FATAL)]
 
 
 def _refuse_packages(document: Any) -> None:

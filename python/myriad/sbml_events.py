@@ -19,8 +19,8 @@ from .expression import symbols_of
 from .folding import (add, both, choose, compare, constant, divide, either, is_constant, multiply, number, opposite,
                       subtract, truth, value_of)
 from .model import Event, event
-from .sbml_conditions import (any_of, comparisons_alone, comparisons_of, false, function_of, functions_of, never, true,
-                              with_values)
+from .sbml_conditions import (any_of, comparisons_alone, comparisons_of, complements, false, function_of,
+                              functions_of, is_for_an_instant, never, true, with_values)
 from .sbml_document import named
 from .sbml_instant import (Instant, Occurrence, Pending, Slot, at_once, interfere, margin, mark, never_due,
                            next_random)
@@ -73,9 +73,7 @@ class Events:
         self._start()
 
     def _accessory(self, wanted: str) -> Any:
-        name = self.semantics.component_name(wanted)
-        self.semantics.names[f"accessory {wanted}"] = name
-        return sym.accessory(name)
+        return sym.accessory(self.semantics.new_name(wanted))
 
     def is_still(self, expression: Any) -> bool:
         """Whether an expression changes at events alone."""
@@ -93,10 +91,8 @@ class Events:
         """The accessory with the latest random number of an instance, and its value at the start, which follows from
         the number of the instance."""
         if self._random is None:
-            name = self.semantics.component_name("random_number")
-            self.semantics.names["accessory random_number"] = name
             start = next_random(next_random(sym.instance % (2**31 - 1), True), True)
-            self._random = sym.integer_accessory(name), start
+            self._random = sym.integer_accessory(self.semantics.new_name("random_number")), start
         return self._random
 
     def _slot(self, one: Occurrence, i: int, written: set[Any]) -> Slot:
@@ -139,11 +135,10 @@ class Events:
             if self.semantics.quantities[name].changes == "assignment":
                 raise Refused(f"{where} sets '{name}', which has an assignment rule")
             given[name] = number(translate(assignment.getMath(), f"{named(assignment)} of {where}"))
-        name = self.semantics.component_name(element.getIdAttribute() or f"event_{index + 1}")
-        self.semantics.names[f"event {index}"] = name
+        name = self.semantics.new_name(element.getIdAttribute() or f"event_{index + 1}")
         if condition.op != "truth":
             condition = comparisons_alone(condition, where, self.is_still)
-        if delay is not None and not persistent and any(c.op == "equal" and not self.is_still(c)
+        if delay is not None and not persistent and any(is_for_an_instant(c, self.is_still)
                                                         for c in comparisons_of(condition)):
             raise Refused(f"{where} waits, and its trigger by == ceases to hold at once: make it persistent")
         made = Occurrence(name, where, condition, starts, persistent, given, from_trigger, delay, priority)
@@ -186,8 +181,9 @@ class Events:
     def _trigger(self, function: Any, group: list[tuple[Occurrence, Any]]) -> None:
         """The event that finds where comparisons with that difference begin to hold."""
         instant = Instant(self, self._now)
-        instant.located = [comparison for _, comparison in group]
-        after, before = ({c: value for c in instant.located} for value in (true, false))
+        begin = [comparison for _, comparison in group]
+        instant.located = after = {**{c: false for one in begin for c in complements(one)}, **{c: true for c in begin}}
+        before = {c: opposite(value) for c, value in after.items()}
         happening = []
         for one in dict.fromkeys(o for o, _ in group):
             holds = with_values(one.trigger, after)
@@ -205,8 +201,7 @@ class Events:
         names = [e.name for e in self.events]
         name = group[0][0].id
         if name in names:
-            name = self.semantics.component_name(f"{name}_{len(names) + 1}")
-            self.semantics.names[f"event {name}"] = name
+            name = self.semantics.new_name(f"{name}_{len(names) + 1}")
         do = instant.assignments([one for one, _ in happening])
         self.events.append(event(function, name=name, direction="rising", do=do))
 
@@ -221,20 +216,18 @@ class Events:
             values = {n: slot.values.get(n, v) for n, v in one.given.items()} if one.from_trigger else None
             instant.pending.append(Pending(one, is_due, values))
             instant.values[slot.due] = choose(is_due, constant(never_due), slot.due)
-        name = self.semantics.component_name("due")
-        self.semantics.names["event due"] = name
         instant.run()
-        self.events.append(event(sym.time - next_time, name=name, direction="rising",
+        self.events.append(event(sym.time - next_time, name=self.semantics.new_name("due"), direction="rising",
                                  do=instant.assignments([one for one, _ in slots])))
 
     def _cancel(self, one: Occurrence, comparison: Any) -> None:
         """The event that finds where a trigger ceases to hold whose executions must not outlast it."""
-        function = function_of(comparison)
+        function = function_of(comparison, self.is_still)
         if self.is_still(function):
             return
-        name = self.semantics.component_name(f"{one.id}_ceases")
-        self.semantics.names[f"event {name}"] = name
-        ceases = opposite(with_values(one.trigger, {comparison: false}))
+        name = self.semantics.new_name(f"{one.id}_ceases")
+        after = {comparison: false, **{c: true for c in complements(comparison)}}
+        ceases = opposite(with_values(one.trigger, after))
         do = {slot.due: choose(ceases, constant(never_due), slot.due) for slot in one.slots}
         do[sym.end_instance] = both(ceases, any_of(at_once(slot.due) for slot in one.slots))
         self.events.append(event(ex.make("negate", (function,)), name=name, direction="rising", do=do))

@@ -19,6 +19,7 @@ from .sbml_conditions import all_of, any_of, comparisons_of, false, function_of,
 if TYPE_CHECKING:
     from .sbml_events import Events
 from .sbml_math import Refused
+from .time_switches import margin
 
 _together = 16, 64  #: whose order matters: where it is not known beforehand, and in any case
 _consequences = 4  #: of them, at the same instant, likewise
@@ -76,13 +77,6 @@ def at_once(earlier: Any) -> Any:
     return compare("less_equal", ex.abs(sym.time - earlier), margin())
 
 
-def margin() -> Any:
-    """The difference of times that count as one instant: rounding errors of the time, and of steps through the whole
-    time domain, whatever the model's unit of time is."""
-    domain = ex.abs(sym.t_end - sym.t_begin)
-    return 1e-10 * ex.abs(sym.time) + 1e-13 * choose(compare("less", domain, constant(1e300)), domain, constant(0.0))
-
-
 def mark(name: str) -> Any:
     """What stands for the value that an event gives."""
     return ex.make("symbol", value=("value", name))
@@ -116,7 +110,8 @@ class Instant:
     def __init__(self, events: Events, values: dict[Any, Any], at_start: bool = False) -> None:
         self.events, self.values = events, dict(values)
         self.truth: dict[Occurrence, Any] = {}
-        self.located: list[Any] = []  # comparisons that begin to hold, though rounding may leave them short of it
+        # comparisons that begin to hold or to fail, though rounding may leave them short of it
+        self.located: dict[Any, Any] = {}
         self.pending: list[Pending] = []
         self.executed: list[tuple[Occurrence, Any]] = []
         self.is_open: Any = false
@@ -130,23 +125,24 @@ class Instant:
     def _holds(self, one: Occurrence) -> Any:
         """Whether a trigger holds now."""
         begun = {}
-        for comparison in self.located:
+        for comparison, value in self.located.items():
             now = self._at(comparison)
             changed = any_of(compare("not_equal", self.values[s], s) for s in symbols_of([comparison])
                              if self.values.get(s, s) is not s)
-            begun[comparison] = now if is_constant(now) else either(opposite(changed), now)
+            begun[comparison] = now if is_constant(now) else (
+                either(opposite(changed), now) if value is true else both(changed, now))
         return with_values(one.trigger, {c: begun.get(c, self._at(c)) for c in comparisons_of(one.trigger)})
 
     def _open(self, condition: Any) -> None:
         self.is_open = either(self.is_open, both(self.given, condition))
 
-    def about_to_hold(self, one: Occurrence, holds: Any) -> Any:
-        """Whether a trigger does not hold, but does right afterwards, as x > 0 where x is zero and rises: no crossing
-        shows it. It is open where the rate is zero too."""
+    def about_to_hold(self, one: Occurrence, holds: Any, changed: Any = true) -> Any:
+        """Whether a trigger, where something has `changed` it, does not hold, but does right afterwards, as x > 0 where
+        x is zero and rises: no crossing shows it. It is open where the rate is zero too."""
         if not any(c.op in ("less", "greater") and not self.events.is_still(c) for c in comparisons_of(one.trigger)):
             return false
-        function = function_of(one.trigger)
-        on_surface = both(opposite(holds), compare("equal", self._at(function), constant(0.0)))
+        function = function_of(one.trigger, self.events.is_still)
+        on_surface = both(changed, both(opposite(holds), compare("equal", self._at(function), constant(0.0))))
         if never(on_surface):
             return false
         rate = self.events.rate_of(function, one.where)
@@ -339,7 +335,9 @@ class Instant:
             if not one.inputs & changed:
                 continue
             holds = self._holds(one)
-            begins, is_about_to = both(opposite(self.truth[one]), holds), self.about_to_hold(one, holds)
+            by = any_of(true if selected is self.given else selected
+                        for p, selected in which if p.what.writes & one.inputs)
+            begins, is_about_to = both(opposite(self.truth[one]), holds), self.about_to_hold(one, holds, by)
             self.truth[one] = choose(self.given, holds, self.truth[one])
             if any(other is one for other, _ in self.executed):  # again and again, perhaps
                 self._open(is_about_to)
@@ -366,8 +364,11 @@ class Instant:
             if one.last is not None:
                 do[one.last] = choose(happens, sym.time, do.get(one.last, one.last))
         if is_constant(self.is_open) and value_of(self.is_open):
-            which = " and ".join(dict.fromkeys(one.where for one in group))
-            raise Refused(f"{which} happen at one instant, and SBML leaves open what happens: their order matters")
+            which = list(dict.fromkeys(one.where for one in group))
+            if len(which) == 1:
+                raise Refused(f"{which[0]} may make itself happen again at the same instant, without an end")
+            raise Refused(f"{' and '.join(which)} happen at one instant, and SBML leaves open what happens: their "
+                          "order matters")
         if not never(self.is_open):
             do[sym.end_instance] = self.is_open
         return do

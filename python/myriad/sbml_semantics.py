@@ -174,6 +174,12 @@ class Semantics:
         name = name if name[0].isalpha() else f"x_{name}"
         return sym.free_name(name, self.names.values())
 
+    def new_name(self, wanted: str) -> str:
+        """Such a name, of something that is no element of the file."""
+        name = self.component_name(wanted)
+        self.names[f"made {name}"] = name
+        return name
+
     def _represent(self) -> None:
         """Decides how each quantity is stored, and with which name."""
         for quantity in self.quantities.values():
@@ -209,6 +215,8 @@ class Semantics:
             start = start() if callable(start) else start
             if start is not None and is_constant(start):
                 return start
+        if quantity.value is not None and math.isinf(quantity.value) and quantity.initial is None:
+            return constant(quantity.value)  # which no parameter of a model can have
         return sym.symbol("parameter", name)
 
     def _start(self, quantity: Quantity) -> Any:

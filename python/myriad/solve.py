@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import _core, compiler, kinds, nvrtc, tape
+from . import _core, compiler, kinds, nvrtc, tape, time_switches
 from .components import Components, by_component, unknown
 from .core_options import finish_options, make_options, options_of, takes_options
 from .device import DeviceInput
@@ -83,7 +83,7 @@ def _gather(components: Components, sweep: Sweep | ByComponent | None, start: By
             kind = components.place.get(name, (None,))[0]
             if kind is None or (allowed is not None and kind not in allowed):
                 known = [n for n, (k, _) in components.place.items()
-                         if n not in components.tables and (allowed is None or k in allowed)]
+                         if n not in {*components.tables, *components.hidden} and (allowed is None or k in allowed)]
                 raise unknown(name, known, f"component of the model that {source} can set")
             if name in given:
                 raise Error(f"'{name}' is given in the sweep and in start=: give it once")
@@ -322,8 +322,9 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
         raise with_event_names(error, components.event_names) from None
     finally:
         display.close()
+    notes = [one for one in (no_gpu, time_switches.note(model, given_options)) if one]
     run = Run(components, ensemble, report, kernel, sweep, _inputs(components, given), recorded, sampled,
-              clock.perf_counter() - begin, core_options.record.from_phase, [no_gpu] if no_gpu else [])
+              clock.perf_counter() - begin, core_options.record.from_phase, notes)
     if isinstance(model, WithSensitivities) and (undefined := note(run)) is not None:
         run.report.notes.append(undefined)
     if failure is not None:

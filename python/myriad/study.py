@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from . import _core, nvrtc
+from . import _core, nvrtc, time_switches
 from .axes import Axis, Random, drawn
 from .components import Components, name_of, unknown
 from .core_options import finish_options, make_options, options_of, takes_options
@@ -90,7 +90,7 @@ class Study:
         core_options, recorded, sampled = make_options(components, 0, options)
         finish_options(core_options, options, components, len(components.states), len(components.events))
         core_options.invalid_instances = "mark"
-        self._interpreted = interpreted
+        self._interpreted, self._note = interpreted, time_switches.note(model, options)
         self._kernels: dict[str, Kernel] = {}
         self._kernel_for = lambda device: kernel_for(device, model, components, chosen, control, samples is not None,
                                                      precision, self._interpreted)
@@ -324,7 +324,7 @@ class Study:
                 return _ExecutedRun(self, executor, devices, chunk, folder or None, show).run()
             self._use(devices, chunk)
             (results, facts), failure = self._core.run(show)
-            result = self._result(results, facts, folder or None, [no_gpu] if no_gpu else [])
+            result = self._result(results, facts, folder or None, [n for n in (no_gpu, self._note) if n])
             if failure is not None:
                 if isinstance(failure, KeyboardInterrupt):
                     raise Interrupted(result) from None

@@ -18,6 +18,7 @@ from .expression import evaluate, symbols_of
 from .folding import compare, constant, is_constant, value_of
 from .interpolate import interpolate
 from .model import Event, Model, event
+from .time_switches import TimeSwitches
 from .xpp_formula import Names, NoFormula, formula, words
 
 if TYPE_CHECKING:
@@ -210,6 +211,10 @@ class _File:
         if statement and kind:
             self._statement(line, kind, statement[2].strip())
             return
+        if text.split()[0] == "only":  # which says what is plotted
+            return
+        if re.search(r"\bint\s*[\[{]", text):
+            line.refuse("integral equations are not supported")
         if re.match(r"0\s*=", text):
             line.refuse("algebraic equations are not supported")
         if re.match(r"[a-z]\w*\s*\(\s*t\s*\+\s*1\s*\)\s*=", text):
@@ -240,8 +245,6 @@ class _File:
     def _of_arguments(self, line: _Line, name: str, arguments: str, value: str) -> None:
         if arguments.strip() == "0":
             self.parts.initial[name] = (line, value)
-        elif arguments.strip() == "t":
-            line.refuse("integral equations are not supported")
         else:
             wanted = [a.strip() for a in arguments.split(",")]
             if not all(re.fullmatch(r"[a-z]\w*", a) for a in wanted):
@@ -299,7 +302,8 @@ class _File:
         if not found or int(found[1]) not in (-1, 0, 1):
             line.refuse("an event is written global sign {condition} {name=formula; ...}, with the sign 1 or -1")
         if int(found[1]) == 0:
-            line.refuse("an event of the sign 0, where a condition is zero without a change of sign, is not supported")
+            line.refuse("an event of the sign 0, where a condition is zero without a change of sign, is not supported: "
+                        "give 1 for one that rises through zero, -1 for one that falls")
         resets = []
         for reset in filter(None, (r.strip() for r in found[3].split(";"))):
             parts = re.fullmatch(r"([a-z]\w*)\s*=(.*)", reset)
@@ -337,7 +341,7 @@ class XppModel(Model):
         states = {n: sym.symbol("state", self._component(n)) for n in parts.equations}
         parameters = {n: sym.symbol("parameter", self._component(n)) for n in parts.parameters}
         names = Names()
-        names.states = list(states)
+        names.series = [list(states), list(parts.quantities)]
         names.values = {"t": sym.time, "pi": constant(np.pi), **{n: constant(v) for n, v in parts.numbers.items()},
                         **parameters, **states}
         names.functions = {n: (arguments, body) for n, (_, arguments, body) in parts.functions.items()}
@@ -348,7 +352,10 @@ class XppModel(Model):
         equations = {states[n]: _in_line(line, text, names) for n, (line, text) in parts.equations.items()}
         events = [self._event(one, number, names, states, parameters) for number, one in enumerate(parts.events, 1)]
         name = self._component(re.sub("_+", "_", re.sub(r"\W", "_", name.lower())).strip("_") or "model")
-        super().__init__(equations, events, None, None, None, None, None, None, list(parameters.values()), (), name)
+        switches = TimeSwitches(equations, events, {}, self._component)
+        super().__init__(switches.equations, events, None, switches.initialise, None, None, None, None,
+                         list(parameters.values()), (), name, switches.stops)
+        self.hidden, self.jumps_to_miss = frozenset(self.accessories), switches.unknown
         self.line = users_line()
         self.defaults: dict[str, Any] = {**self.shared_values}
         for n, symbol in states.items():
@@ -388,8 +395,8 @@ class XppModel(Model):
                parameters: dict[str, Any]) -> Event:
         """Its resets one after the other, each with the states that those before it have set."""
         known = Names()
-        known.values, known.functions, known.tables, known.states = (
-            dict(names.values), names.functions, names.tables, names.states)
+        known.values, known.functions, known.tables, known.series = (
+            dict(names.values), names.functions, names.tables, names.series)
         function = _in_line(one.line, one.condition, names)
         do: dict[Any, Any] = {}
         for name, text in one.resets:

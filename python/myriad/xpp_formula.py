@@ -56,13 +56,13 @@ class NoFormula(Exception):
 
 class Names:
     """What formulas may name: expressions, functions {name: (arguments, formula)}, tables as functions of one
-    expression, and the states in their order, for `shift`."""
+    expression, and in their order the states and the quantities, for `shift`."""
 
     def __init__(self) -> None:
         self.values: dict[str, Any] = {}
         self.functions: dict[str, tuple[list[str], str]] = {}
         self.tables: dict[str, Callable[[Any], Any]] = {}
-        self.states: list[str] = []
+        self.series: list[list[str]] = []
 
 
 def formula(text: str, names: Names, bound: Mapping[str, Any] | None = None) -> Any:
@@ -199,18 +199,21 @@ class _Reader:
         return int(value_of(value))
 
     def shift(self) -> Any:
-        """shift(x, n): the n-th state after x."""
+        """shift(x, n): the n-th state or quantity after x."""
         self.expect("(")
         name = self.take()
         self.expect(",")
         by = self.whole_number(self.expression(0), "the second argument of `shift`")
         self.expect(")")
-        if name not in self.names.states:
-            raise NoFormula(f"`shift` of `{name}`, which is no state")
-        place = self.names.states.index(name) + by
-        if not 0 <= place < len(self.names.states):
-            raise NoFormula(f"there is no state {by} after `{name}`")
-        return self.names.values[self.names.states[place]]
+        series = next((one for one in self.names.series if name in one), None)
+        if series is None:
+            raise NoFormula(f"`shift` of `{name}`, which is no state and no quantity")
+        place = series.index(name) + by
+        if not 0 <= place < len(series):
+            raise NoFormula(f"nothing is {by} after `{name}`")
+        if series[place] not in self.names.values:
+            raise NoFormula(f"`{series[place]}` has to be defined above what uses it")
+        return self.names.values[series[place]]
 
     def sum(self) -> Any:
         """sum(low, high) of (expression of i')."""

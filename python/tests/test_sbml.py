@@ -333,3 +333,137 @@ def test_external_models_are_found_beside_a_file_given_by_a_relative_path(tmp_pa
     monkeypatch.chdir(tmp_path)
     run = my.solve(my.read_sbml("models/outer.xml"), time=(0, 2), rtol=1e-9, interpreted=True)
     assert run["A__x"][0] == pytest.approx(np.exp(-1), rel=1e-7)
+
+
+_pulses = {
+    "constants": ("piecewise(1, time > on && time < on + 0.001, 0)", 0.001),
+    "absolute value": ("piecewise(1, abs(time - on) < 0.001, 0)", 0.002),
+    "remainder": ("piecewise(1, rem(time + 1, on) < 0.001, 0)", 0.004),
+    "whole part": ("piecewise(1, time / on - floor(time / on) < 0.001, 0)", 0.001 * 10.2),
+    "sine": ("piecewise(1, sin(2 * pi * time / on) > cos(0.001 * pi), 0)", 0.001 * 2.55 * 4),
+    "nested": ("piecewise(piecewise(1, time < on + 0.001, 3), time > on && time < on + 0.002, 0)", 0.004),
+}
+
+
+@pytest.mark.parametrize("backward", [False, True], ids=["forward", "backward"])
+@pytest.mark.parametrize("pulse", _pulses)
+def test_a_pulse_in_time_is_not_passed_over(pulse, backward):
+    formula, area = _pulses[pulse]
+    model = my.read_sbml(sbml_models.document([variable("x", 0), parameter("on", 2.55), rate("x", formula)]))
+    run = my.solve(model, time=(9.99, -0.01) if backward else (-0.01, 9.99), interpreted=True)
+    if pulse in ("remainder", "whole part", "sine"):
+        run = my.solve(model, time=(10.2, 0) if backward else (0, 10.2), interpreted=True)
+    np.testing.assert_allclose(run["x"], -area if backward else area, rtol=1e-7)
+    assert run.report.notes == []
+
+
+def test_a_pulse_in_time_has_derivatives_by_its_ends():
+    model = my.read_sbml(sbml_models.document([variable("x", 0), parameter("on", 3), parameter("off", 3.5), rate(
+        "x", "piecewise(2, time > on && time < off, 0) - 0.3 * x")]))
+    run = my.solve(model, time=(0, 10), sensitivities=["on", "off"], rtol=1e-10, device="cpu")
+    np.testing.assert_allclose(run.sensitivity["x", "on"], -2 * np.exp(-0.3 * 7), rtol=1e-7)
+    np.testing.assert_allclose(run.sensitivity["x", "off"], 2 * np.exp(-0.3 * 6.5), rtol=1e-7)
+
+
+def test_a_window_that_an_event_opens_later_is_not_passed_over():
+    model = my.read_sbml(sbml_models.document([
+        variable("x", 0), variable("last", -100), parameter("at", 3), event("time > at", {"last": "time"}),
+        rate("x", "piecewise(1, time > last + 2 && time < last + 2.001, 0)")]))
+    run = my.solve(model, {"at": [-1, 3, 4.5, 9]}, time=(0, 10), interpreted=True)
+    np.testing.assert_allclose(run["x"], [0, 0.001, 0.001, 0], rtol=1e-7)
+
+
+@pytest.mark.parametrize("trigger, times", [
+    ("pulse > 0.5", [3]), ("pulse < 0.5", [3.001]), ("clock * pulse > 0.5", [3]), ("rem(time, 2) > 1.999", [
+        1.999, 3.999, 5.999, 7.999]), ("sin(pi * time / 2) > 0.999999", [4 * k + 2 * np.arcsin(0.999999) / np.pi
+                                                                        for k in range(3)]),
+    ("floor(time / 3) > count", [3, 6, 9]), ("floor(time / 2) > 2", [6]), ("rem(floor(time), 4) == 3", [3, 7]),
+    ("floor(time) != 3", [4])])
+def test_triggers_that_time_alone_decides_are_not_missed(trigger, times):
+    model = my.read_sbml(sbml_models.document([
+        variable("pulse"), always("pulse", "piecewise(1, time > 3 && time < 3.001, 0)"), variable("clock", 0),
+        rate("clock", "1"), variable("count", 0), variable("sum", 0),
+        event(trigger, {"count": "count + 1", "sum": "sum + time"})]))
+    run = my.solve(model, time=(0, 9.9), interpreted=True)
+    assert run["count"] == len(times)
+    np.testing.assert_allclose(run["sum"], sum(times), rtol=1e-9)
+
+
+def test_a_window_of_a_state_that_measures_time_is_not_passed_over():
+    model = my.read_sbml(sbml_models.document([
+        variable("clock", 1), variable("speed", 0.5), variable("x", 0), variable("n", 0), rate("clock", "speed"),
+        rate("x", "piecewise(1, clock > 3 && clock < 3.001, 0)"), event("sin(3 * clock) > 0.5", {"n": "n + 1"}),
+        event("time > 7", {"clock": "clock - 2", "speed": "0.25"})]))
+    run = my.solve(model, time=(0, 20), interpreted=True)
+    np.testing.assert_allclose(run["x"], 0.002 + 0.004, rtol=1e-7)
+    assert run["n"] == 3  # from 1 to 4.5, and from 2.5 to 5.75: at 2.269 and 4.363, and at 4.363
+
+
+def test_a_comparison_begins_to_hold_where_its_opposite_ceases_to():
+    model = my.read_sbml(sbml_models.document([
+        variable("x", 0), rate("x", "cos(time)"), variable("n", 0), variable("m", 0), variable("waited", 0),
+        event("xor(x > 0.3, x > -0.5)", {"n": "n + 1"}),
+        event("(0.3 < x && time <= 2) || (x <= 0.3 && time > 2)", {"m": "m + 1"}),
+        event("xor(x > 0.3, x > -0.5)", {"waited": "waited + 1"}, delay="0.7", persistent=False)]))
+    run = my.solve(model, time=(0, 9.9), interpreted=True)
+    assert my.status_names[run.status[0]] == "success"
+    # sin(t) rises through 0.3 at 0.30, and comes into (-0.5, 0.3] at 2.84, 5.76 and 9.12, each time for 0.83
+    assert [run["n"], run["m"], run["waited"]] == [3, 3, 3]
+
+
+def test_a_trigger_at_its_threshold_is_left_alone_by_events_that_do_not_happen():
+    model = my.read_sbml(sbml_models.document([
+        variable("c", 1), rate("c", "0.5"), variable("k", 0), event("c > 1", {"k": "2"}),
+        event("time > 4.5", {"c": "0.3"})]))
+    run = my.solve(model, time=(0, 10), interpreted=True)
+    assert my.status_names[run.status[0]] == "success" and run["k"] == 2
+
+
+def test_an_event_that_makes_itself_happen_without_an_end_is_refused():
+    with pytest.raises(my.Error, match="may make itself happen again at the same instant, without an end"):
+        my.read_sbml(sbml_models.document([variable("c", 0), rate("c", "1"), event("c > 2", {"c": "2"})]))
+
+
+def test_jumps_at_times_without_a_formula_are_noted():
+    model = my.read_sbml(sbml_models.document([variable("x", 0), rate("x", "piecewise(1, exp(-time) > 0.1, 0)")]))
+    note, = my.solve(model, time=(0, 10), interpreted=True).report.notes
+    assert "`exp(-time) > 0.1`" in note and "maximum_step=" in note
+    assert my.solve(model, time=(0, 10), interpreted=True, maximum_step=0.1).report.notes == []
+
+
+@pytest.mark.parametrize("rate_of_x, expected", [
+    ("piecewise(1, floor(time ^ 2) > 3, 0)", 8), ("piecewise(1, piecewise(2, exp(-time) < exp(-2), 0) > 1, 0)", 8),
+    ("floor(sqrt(time))", 16), ("piecewise(floor(exp(time - 2)), time < 2.5, 0)", 0.5)])
+def test_jumps_at_times_without_a_formula_are_where_they_are(rate_of_x, expected):
+    model = my.read_sbml(sbml_models.document([variable("x", 0), rate("x", rate_of_x)]))
+    run = my.solve(model, time=(0, 10), interpreted=True, maximum_step=0.1, rtol=1e-9)
+    np.testing.assert_allclose(run["x"], expected, rtol=1e-6)
+
+
+def test_a_constant_may_be_infinite():
+    model = my.read_sbml(sbml_models.document([parameter("most", "INF"), variable("x", 0), rate("x", "min(most, 2)")]))
+    np.testing.assert_allclose(my.solve(model, time=(0, 1), interpreted=True)["x"], 2)
+
+
+def test_what_parameters_names_is_a_constant():
+    with pytest.raises(my.Error, match="'A' is no constant of the file that parameters= can name: there are c, k, k2"):
+        my.read_sbml(_decay, parameters="k A")
+
+
+def test_messages_have_no_names_that_no_user_knows():
+    model = my.read_sbml(sbml_models.document([
+        variable("x", 0), parameter("k", 1), rate("x", "piecewise(k * k, time > 1, 0)"),
+        event("x > 0.5", {"x": "0"}, delay="1")]))
+    with pytest.raises(my.Error, match="there are x, k$"):
+        my.solve(model, {"what": 1}, time=(0, 2))
+    run = my.solve(model, time=(0, 2), interpreted=True)
+    assert set(run) == {"x", "k"}
+    with pytest.raises(KeyError, match="the model has x, k"):
+        run["what"]
+
+
+def test_a_file_without_an_encoding_is_read_and_checked():
+    text = _decay.replace(' encoding="UTF-8"', "")
+    assert text != _decay and my.read_sbml(text).hash == my.read_sbml(_decay).hash
+    with pytest.raises(my.Error, match="no valid SBML"):
+        my.read_sbml(text.replace('variable="total"', 'variable="what"'))

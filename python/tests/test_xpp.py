@@ -185,7 +185,8 @@ def test_a_file_gives_its_name_to_the_model(tmp_path):
 @pytest.mark.parametrize("line, said", [
     ("wiener w", "noise"), ("markov z 2", "Markov"), ("y'=delay(x,1)", "delays"), ("bdry x-1", "boundary"),
     ("0=x+y", "algebraic equations"), ("solv y=1", "algebraic equations"), ("x(t+1)=2*x", "a map"),
-    ("y(t)=int{exp(-t)#x}", "integral equations"), ("volterra y=1", "integrals over the past"),
+    ("y(t)=int{exp(-t)#x}", "integral equations"), ("y'=int[.5]{exp(-t)#x}", "integral equations"),
+    ("volterra y=1", "integrals over the past"),
     ("y'=ran(1)", "random numbers"), ("special k=conv(even,11,3,w,x)", "networks"), ("export {x} {y}", "libraries"),
     ("global 0 {x-1} {x=0}", "sign 0"), ("global 1 {x-1} {q=0}", "neither a state nor a parameter"),
     ("y'=q+1", "`q` is unknown"), ("early=late\nlate=x", "`late` is unknown"), ("y'=f(x,2)\nf(x)=x", "2 arguments"),
@@ -204,3 +205,26 @@ def test_a_compiled_model_agrees():
     runs = [solved(text, {"I": [1.2, 1.5]}, interpreted=interpreted) for interpreted in (True, False)]
     for name in ("v", "u", "w"):
         np.testing.assert_allclose(runs[0][name], runs[1][name], rtol=1e-9, atol=1e-9)
+
+
+def test_a_pulse_in_time_is_not_passed_over():
+    text = """p on=5,off=5.001,per=3,since=-100
+x'=heav(t-on)-heav(t-off)
+y'=mod(t,per)<.001
+z'=(t>on)*(t<off)
+w'=if((t-since)>2)then(if((t-since)<2.001)then(1)else(0))else(0)
+global 1 {t-6} {since=t}
+"""
+    run = solved(text, time=(0, 10), samples=None, rtol=1e-6)
+    for name, area in (("x", 0.001), ("y", 0.004), ("z", 0.001), ("w", 0.001)):
+        np.testing.assert_allclose(run[name], area, rtol=1e-7)
+
+
+def test_a_function_of_t_is_no_integral_equation():
+    run = solved("stim(t)=s0*if(t<1)then(t)else(0)\npar s0=2\nx'=stim(t)+stim(t-1)\nonly x\n")
+    np.testing.assert_allclose(run["x"][0, -1], 1, rtol=1e-9)  # of 2t until 1, and of 2(t - 1)
+
+
+def test_shift_is_known_of_quantities():
+    run = solved("q[0..2]=[j]*t\nx'=sum(0,2)of(shift(q0,i'))\n")
+    np.testing.assert_allclose(run["x"][0, -1], 3 * 2**2 / 2, rtol=1e-9)

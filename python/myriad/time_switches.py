@@ -1,0 +1,267 @@
+# SPDX-License-Identifier: MIT
+"""Jumps of equations at times that are known beforehand: comparisons that time and constants alone decide, and whole
+parts and remainders of time.
+
+Steps end at the next of these times, so that no step passes over what happens between two of them. From one to the next
+everything that jumps has its value in the middle between them.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any
+
+from . import expression as ex, symbols as sym
+from .expression import symbols_of, text, walk
+from .folding import (add, apply, choose, compare, constant, divide, is_constant, make_folded, multiply, subtract,
+                      total, value_of)
+from .model import Event, Stop, stop
+from .per_phase import rebuilt
+
+if TYPE_CHECKING:
+    from .options import Options
+
+_comparisons = "less", "less_equal", "greater", "greater_equal", "equal", "not_equal"
+_whole = "floor", "rint", "fmod"
+_waves = "sin", "cos"
+
+_one = constant(1.0)
+
+Form = dict[Any, Any]  #: a sum: coefficients by what they multiply, which is 1, the time, or a function of time
+
+
+def margin() -> Any:
+    """The difference of times that count as one instant: rounding errors of the time, and of steps through the whole
+    time domain, whatever the model's unit of time is."""
+    domain = ex.abs(sym.t_end - sym.t_begin)
+    return 1e-10 * ex.abs(sym.time) + 1e-13 * choose(compare("less", domain, constant(1e300)), domain, constant(0.0))
+
+
+def note(model: Any, options: Options) -> str | None:
+    """What to know of a model that jumps at times which have no formula."""
+    jumps = getattr(model, "jumps_to_miss", ())
+    if not jumps or options.maximum_step is not None or options.step is not None:
+        return None
+    return (f"the model jumps where {' and '.join(f'`{jump}`' for jump in jumps)} changes, at times that are not known "
+            "beforehand: a step may pass over what is between two of them; give a maximum_step= shorter than that")
+
+
+class TimeSwitches:
+    """`equations` by state as they are between jumps, the `stops` at these, what `initialise` sets, and jumps whose
+    times are `unknown`, as they have no formula: these stay as they are.
+
+    States that change at events alone may decide too: the actions of `events` find the next jump anew. Where functions
+    of events jump or come back, steps also end between jumps, where their signs are seen. `free_name` makes names of
+    components."""
+
+    def __init__(self, equations: dict[Any, Any], events: Iterable[Event], initialise: dict[Any, Any],
+                 free_name: Callable[[str], str]) -> None:
+        self.equations, self.initialise = equations, initialise
+        self.stops: list[Stop] = []
+        self.unknown: list[str] = []
+        self._still = {s for s, rate in equations.items() if is_constant(rate) and value_of(rate) == 0}
+        self._clocks = {s: rate for s, rate in equations.items()
+                        if s not in self._still and self._is_still(rate)}  # which measure time
+        self._forms: dict[Any, Form | None] = {}
+        self._times: dict[Any, list[Any] | None] = {}
+        self._kinks: list[Any] = []
+        self._direction = choose(compare("less", sym.t_end, sym.t_begin), constant(-1.0), constant(1.0))
+        self._now = sym.time + self._direction * margin()
+        functions = [one.function for one in events]
+        found = {node: self._times_of(node) for node in walk([*equations.values(), *functions]) if self._may_jump(node)}
+        self.unknown = [text(node) for node, times in found.items() if times is None]
+        in_events = {node for node in walk(functions) if found.get(node)}
+        for function in functions:
+            if self._is_of_time(function) and any(key is not sym.time and key is not _one
+                                                  for key in self._form(function) or ()):
+                crossing = compare("less", function, constant(0.0))
+                found[crossing] = self._times_of(crossing)
+                in_events.add(crossing)
+        found |= {kink: self._times_of(kink) for kink in self._kinks}
+        times = [t for t in dict.fromkeys(t for several in found.values() for t in several or ())
+                 if not is_constant(t) or math.isfinite(value_of(t))]
+        if not times:
+            return
+        following, middle = (sym.accessory(free_name(name)) for name in ("next_jump", "between_jumps"))
+        between = {node: self._between(node, middle) for node, several in found.items() if several is not None}
+        self.equations = dict(zip(equations, rebuilt(list(equations.values()), lambda node: node, between)))
+        first = self._first(times)
+        to_middle = 0.5 * (sym.time + first)
+        start = {following: to_middle if in_events else first, middle: to_middle}
+        at_jump = start
+        if in_events:
+            is_middle = compare("equal", following, middle)
+            at_jump = {following: choose(is_middle, first, to_middle), middle: choose(is_middle, middle, to_middle)}
+        self.stops.append(stop(following, every=0, name=free_name("jump"), do=at_jump))
+        needed = set(symbols_of([first]))
+
+        def continued(do: dict[Any, Any]) -> dict[Any, Any]:
+            return {**do, **dict(zip(start, rebuilt(list(start.values()), lambda node: node, do)))}
+
+        self.initialise = continued(initialise)
+        for one in events:
+            if needed & set(one.do):
+                one.do = continued(one.do)
+
+    def _may_jump(self, node: Any) -> bool:
+        return node.op in (*_comparisons, *_whole) and self._is_of_time(node)
+
+    def _is_of_time(self, node: Any) -> bool:
+        """Whether time and what changes at events alone decide an expression."""
+        return self._has_time(node) and all(s is sym.time or s in self._clocks or self._is_still(s)
+                                            for s in symbols_of([node]))
+
+    def _has_time(self, node: Any) -> bool:
+        return any(s is sym.time or s in self._clocks for s in symbols_of([node]))
+
+    def _is_still(self, node: Any) -> bool:
+        """Whether an expression changes at events alone."""
+        return all(s is not sym.time and s.value[0] in ("parameter", "shared") or s in self._still
+                   for s in symbols_of([node]))
+
+    def _at(self, node: Any, time: Any) -> Any:
+        """An expression at another time."""
+        clocks = {s: s + rate * (time - sym.time) for s, rate in self._clocks.items()}
+        return rebuilt([node], lambda one: one, {sym.time: time, **clocks})[0]
+
+    def _first(self, times: list[Any]) -> Any:
+        """The first of some times that is still to come, infinite if there is none."""
+        to_come = [choose(compare("greater", self._direction * (t - self._now), constant(0.0)), self._direction * t,
+                          constant(math.inf)) for t in times]
+        return self._direction * functools.reduce(lambda a, b: ex.make("min", (a, b)), to_come)
+
+    def _between(self, node: Any, middle: Any) -> Any:
+        """What jumps, as it is between two jumps."""
+        inside = self._at(node, middle)
+        if node.op != "fmod":
+            return inside
+        return subtract(node.args[0], subtract(self._at(node.args[0], middle), inside))  # less what is whole
+
+    # -- When it jumps -------------------------------------------------------------------------------------------------
+
+    def _times_of(self, node: Any) -> list[Any] | None:
+        """Some times, among which are the next ones of jumps before and after now; None if they have no formula."""
+        if node not in self._times:
+            self._times[node] = self._found_times_of(node)
+        return self._times[node]
+
+    def _found_times_of(self, node: Any) -> list[Any] | None:
+        if node.op in _comparisons:
+            form = self._form(ex.make("subtract", node.args))
+            waves = _waves_of(form)
+            if form is None or len(waves) > 1 or waves and sym.time in form:
+                return None
+            if waves:
+                rest = self._rest({key: factor for key, factor in form.items() if key is not waves[0]})
+                return self._angles(waves[0], divide(_negative(rest), form[waves[0]]))
+            return self._roots(form, [constant(0.0)])
+        inside = node.args[0] if node.op != "fmod" else ex.make("divide", node.args)
+        form = self._form(inside)
+        if form is None or _waves_of(form):
+            return None
+        shift = 0.5 if node.op == "rint" else 0.0
+        below = apply(ex.floor, subtract(self._now_of(inside), constant(shift)))
+        return self._roots(form, [add(below, constant(shift + k)) for k in (-1, 0, 1)])
+
+    def _now_of(self, node: Any) -> Any:
+        return self._at(node, self._now)
+
+    def _rest(self, form: Form) -> Any:
+        """A sum without its multiple of the time."""
+        return total([multiply(factor, self._now_of(key)) for key, factor in form.items() if key is not sym.time])
+
+    def _roots(self, form: Form, values: list[Any]) -> list[Any]:
+        """The times at which a sum has some values."""
+        if sym.time not in form:
+            return []
+        less = _negative(self._rest(form))
+        return [divide(add(value, less), form[sym.time]) for value in values]
+
+    def _angles(self, wave: Any, height: Any) -> list[Any]:
+        """The times at which a sine or cosine of time has a value."""
+        angle, = wave.args
+        form = self._form(angle)
+        assert form is not None
+        principal = apply(ex.asin if wave.op == "sin" else ex.acos, height)
+        other = subtract(constant(math.pi if wave.op == "sin" else 0.0), principal)
+        turns = apply(ex.floor, divide(self._now_of(angle), constant(2 * math.pi)))
+        return self._roots(form, [add(one, multiply(add(turns, constant(k)), constant(2 * math.pi)))
+                                  for one in (principal, other) for k in (-1.0, 0.0, 1.0)])
+
+    # -- Sums ----------------------------------------------------------------------------------------------------------
+
+    def _form(self, node: Any) -> Form | None:
+        """An expression of time and constants as a sum that is valid until the next jump; None if it is none."""
+        if node not in self._forms:
+            self._forms[node] = self._form_of(node)
+        return self._forms[node]
+
+    def _form_of(self, node: Any) -> Form | None:
+        if node is sym.time:
+            return {sym.time: _one}
+        if node in self._clocks:
+            rate = self._clocks[node]
+            return {sym.time: rate, _one: node - rate * sym.time}
+        if not self._has_time(node):
+            return {_one: node}
+        if node.op in ("abs", "min", "max"):
+            return self._form(self._with_kink(node))
+        forms: list[Form] = []
+        for argument in node.args:
+            form = {} if argument.type == ex.condition else self._form(argument)
+            if form is None:
+                return None
+            forms.append(form)
+        first, second, third = [*forms, {}, {}][:3]
+        jumps = [node] if node.op in _whole else walk(node.args[:1]) if node.op == "select" else []
+        if any(self._may_jump(one) and self._times_of(one) is None for one in jumps):
+            return None
+        if node.op == "select":
+            chosen = self._now_of(node.args[0])
+            return {key: choose(chosen, second.get(key, constant(0.0)), third.get(key, constant(0.0)))
+                    for key in {**second, **third}}
+        if node.op in ("add", "subtract"):
+            return _sum(first, second if node.op == "add" else _opposite(second))
+        if node.op == "negate":
+            return _opposite(first)
+        if node.op in ("multiply", "divide"):
+            if node.op == "multiply" and all(key is _one for key in first):
+                first, second = second, first
+            of = multiply if node.op == "multiply" else divide
+            if any(key is not _one for key in second):
+                return None
+            by = second.get(_one, constant(0.0))
+            return {key: of(factor, by) for key, factor in first.items()}
+        if node.op == "fmod":
+            return _sum(first, {ex.make("subtract", (node.args[0], node)): constant(-1.0)})
+        if node.op in _whole or node.op in _waves and not _waves_of(first):
+            return {node: _one}
+        return None
+
+    def _with_kink(self, node: Any) -> Any:
+        """An absolute value, a minimum or a maximum by a comparison."""
+        a, b = node.args if len(node.args) == 2 else (node.args[0], constant(0.0))
+        is_less = compare("less", a, b)
+        self._kinks.append(is_less)
+        if node.op == "abs":
+            return choose(is_less, ex.make("negate", (a,)), a)
+        return choose(is_less, *((a, b) if node.op == "min" else (b, a)))
+
+
+def _sum(a: Form, b: Form) -> Form:
+    made = {key: add(a.get(key, constant(0.0)), b.get(key, constant(0.0))) for key in {**a, **b}}
+    return {key: factor for key, factor in made.items() if not (is_constant(factor) and value_of(factor) == 0)}
+
+
+def _opposite(form: Form) -> Form:
+    return {key: _negative(factor) for key, factor in form.items()}
+
+
+def _negative(value: Any) -> Any:
+    return value.args[0] if value.op == "negate" else make_folded("negate", value)
+
+
+def _waves_of(form: Form | None) -> list[Any]:
+    return [key for key in form or () if key.op in _waves]
