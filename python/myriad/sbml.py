@@ -18,6 +18,7 @@ from .sbml_events import Events
 from .sbml_math import Refused
 from .sbml_reduce import Reduction
 from .sbml_semantics import Semantics
+from .sbml_switches import Switches
 from .sbml_units import Units
 
 if TYPE_CHECKING:
@@ -105,6 +106,7 @@ class SbmlModel(Model):
                 one.do = reduction.of(one.do)
                 one.function, = reduction.of({0: one.function}).values()
         actions = [e for one in happening.events for e in (one.function, *one.do.values())]
+        switches = Switches(equations.values(), semantics.accessory_name)
         needed = set(symbols_of([*equations.values(), *defaults.values(), *actions, *happening.initialise.values()]))
         constants: dict[Any, float] = {}
         declared = []
@@ -120,9 +122,11 @@ class SbmlModel(Model):
                 declared.append(symbol)
         declared += reduction.parameters if reduction is not None else []
         name = _suffixed(semantics.names.values(), semantics.component_name(name))
-        super().__init__(equations, happening.events, None, happening.initialise, None, None, None, None, declared, (),
-                         name)
+        super().__init__(dict(zip(equations, switches.equations)), happening.events, None,
+                         {**happening.initialise, **switches.initialise}, None, None, None, None, declared, (), name,
+                         switches.stops)
         self.line = users_line()
+        self.hidden |= frozenset(switches.names)
         self.constants = constants
         self.defaults: dict[str, Any] = {**self.shared_values}
         self.defaults |= {n: e for n, e in defaults.items() if n in self.states or n in self.parameters}

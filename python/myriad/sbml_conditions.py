@@ -17,12 +17,12 @@ true, false = ex.constant(True), ex.constant(False)
 
 
 def substituted(roots: Iterable[Any], values: dict[Any, Any]) -> list[Any]:
-    """Expressions with other expressions in the place of symbols."""
+    """Expressions with other expressions in the place of symbols and conditions."""
     roots = list(roots)
     made: dict[int, Any] = {}
     for node in walk(roots):
-        if node.op == "symbol":
-            made[id(node)] = values.get(node, node)
+        if node in values:
+            made[id(node)] = values[node]
         elif any(made[id(a)] is not a for a in node.args):
             arguments = tuple(made[id(a)] for a in node.args)
             if node.op in ("and", "or"):

@@ -73,9 +73,7 @@ class Events:
         self._start()
 
     def _accessory(self, wanted: str) -> Any:
-        name = self.semantics.component_name(wanted)
-        self.semantics.names[f"accessory {wanted}"] = name
-        return sym.accessory(name)
+        return sym.accessory(self.semantics.accessory_name(wanted))
 
     def is_still(self, expression: Any) -> bool:
         """Whether an expression changes at events alone."""
@@ -93,8 +91,7 @@ class Events:
         """The accessory with the latest random number of an instance, and its value at the start, which follows from
         the number of the instance."""
         if self._random is None:
-            name = self.semantics.component_name("random_number")
-            self.semantics.names["accessory random_number"] = name
+            name = self.semantics.accessory_name("random_number")
             start = next_random(next_random(sym.instance % (2**31 - 1), True), True)
             self._random = sym.integer_accessory(name), start
         return self._random

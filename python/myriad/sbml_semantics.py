@@ -174,6 +174,11 @@ class Semantics:
         name = name if name[0].isalpha() else f"x_{name}"
         return sym.free_name(name, self.names.values())
 
+    def accessory_name(self, wanted: str) -> str:
+        """The name of an accessory that the file does not have."""
+        name = self.names[f"accessory {wanted}"] = self.component_name(wanted)
+        return name
+
     def _represent(self) -> None:
         """Decides how each quantity is stored, and with which name."""
         for quantity in self.quantities.values():
