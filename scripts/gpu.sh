@@ -82,7 +82,7 @@ END
         python3 -m zipfile -e build/python-gpu-wheel/*.whl "$packages"
     fi
     local status=0
-    MYRIAD_TEST_DEVICE=cuda python3 -m pytest -q -p no:cacheprovider --durations=5 \
+    MYRIAD_TEST_DEVICE=cuda python3 -m pytest -q --full -p no:cacheprovider --durations=5 \
         python/tests/test_gpu.py python/tests/test_validation.py python/tests/test_nvrtc.py 2>&1 |
         tee "$output/python_tests.log" | tail -40 || status=1
     python3 benchmarks/python/van_der_pol.py --check --output "$output/python_van_der_pol.csv" 2>&1 |

@@ -22,8 +22,8 @@ Steps that run without options: what shows that a build is right.
   python    the Python package: its wheel is built, installed in a fresh virtual environment, and tested (skipped where
             the packages of PyPI that it is built with cannot be installed)
 
-With --full, python tests work with other packages too, JAX and Dask among them, and there are these steps. All run in
-the order ci, programs, python, and then as they stand here.
+With --full, python has all its tests, those of work with other packages too, JAX and Dask among them, and there are these
+steps. All run in the order ci, programs, python, and then as they stand here.
   programs  in the build of ci: examples, benchmarks, validation, projects outside that use the library, every public
             header by itself, compile times
   docs      the documentation as a site: warnings are errors, links within it lead somewhere (skipped where Sphinx
@@ -182,7 +182,7 @@ run_step() {
         python)
             local status=0 log=build/python.log
             local more=()
-            if [[ $other_packages == yes ]]; then more=(--others); fi
+            if [[ $other_packages == yes ]]; then more=(--others --full); fi
             if [[ $every_kernel == yes ]]; then more+=(--all); fi
             quietly "$log" scripts/python.sh "${more[@]}" || status=$?
             if ((status == 77)); then

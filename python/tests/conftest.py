@@ -77,4 +77,12 @@ def ball():
 
 
 def pytest_addoption(parser):
+    parser.addoption("--full", action="store_true", help="also what is marked as long")
     parser.addoption("--all", action="store_true", help="also what takes minutes: all models and GPUs")
+
+
+def pytest_collection_modifyitems(config, items):
+    if not config.getoption("--full") and not config.getoption("--all"):
+        for item in items:
+            if item.get_closest_marker("long"):
+                item.add_marker(pytest.mark.skip(reason="takes long: --full"))
