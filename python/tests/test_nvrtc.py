@@ -52,6 +52,15 @@ def ring():
     return my.model({x: v, v: -ring.parameter("k") * np.roll(x, 1) + A @ np.sin(x)})
 
 
+def bells():
+    """Units in teams with hooks, events, an extremum, and two sums by one matrix."""
+    x, v = (units := my.units(6, threads_per_instance=4)).states("x v")
+    A, top, turns = units.full_coupling("A", np.eye(6)), units.accessory("top"), units.integer_accessory("turns")
+    return my.model({x: v + A @ v, v: A @ np.sin(x) - x}, accessories={top: my.phase_maximum(x), turns: 0},
+                    events=units.events(v, name="turn", do=lambda i: {turns[i]: turns[i] + 1}),
+                    after_step={my.end_phase: turns[0] > 9})
+
+
 # What is compiled for each method: models with every kind of hook and event, outputs along the solution, tables.
 cases = [
     (example_models.duffing, "cash_karp", (), False, "double"),
@@ -65,6 +74,7 @@ cases = [
     (epidemic, "cash_karp", (), False, "float"),
     (remainders, "tsitouras_5", (), False, "double"),
     (ring, "tsitouras_5", ("rms_norm",), True, "double"),
+    (bells, "cash_karp", (), False, "double"),
     (example_models.continuation, "rodas_5p", ("pid_control", "mixed_scale"), True, "double"),
 ]
 models = (*example_models.headers, test_cpp.every_operation, epidemic)

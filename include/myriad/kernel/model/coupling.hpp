@@ -148,9 +148,9 @@ constexpr bool check_couplings() {
                       }),
                       "the band of a coupling does not fit: a banded matrix has fewer diagonals on either side of the "
                       "main one than there are units, a circulant one fewer than half as many");
-        static_assert(all_of([](const coupling& c) {
-                          const coupling* const all = std::data(Unit::couplings);
-                          return c.matrix_of < 0 || (c.matrix_of < &c - all && all[c.matrix_of].matrix_of < 0);
+        static_assert(all_of([number = 0](const coupling& c) mutable {
+                          const int earlier = c.matrix_of;
+                          return earlier < number++ && (earlier < 0 || Unit::couplings[earlier].matrix_of < 0);
                       }),
                       "a coupling has the matrix of one that is not earlier, or that has none of its own: give "
                       "same_coupling the number of an earlier full, banded or circulant coupling");

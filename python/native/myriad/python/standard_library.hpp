@@ -81,6 +81,12 @@ struct remove_cv : type_identity<remove_cv_t<T>> {};
 template <class T>
 struct remove_cvref : type_identity<remove_cvref_t<T>> {};
 template <class T>
+struct remove_pointer : type_identity<T> {};
+template <class T>
+struct remove_pointer<T*> : type_identity<T> {};
+template <class T>
+using remove_pointer_t = typename remove_pointer<T>::type;
+template <class T>
 struct remove_extent : type_identity<T> {};
 template <class T, size_t n>
 struct remove_extent<T[n]> : type_identity<T> {};
