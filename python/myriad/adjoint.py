@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import cache, compiler, symbols as sym
+from . import _core, cache, compiler, nvrtc, symbols as sym
 from .components import Components
 from .cpp import Names, Writer
 from .derivatives import directional, transposed
@@ -23,7 +23,7 @@ from .inputs import numbers, real
 from .methods import default, method_type, stiff
 from .model import Event, Model, Stop
 from .per_phase import substituted
-from .solve import ends_of, solve
+from .solve import device_names, ends_of, solve
 from .statuses import status_names
 
 if TYPE_CHECKING:
@@ -31,9 +31,10 @@ if TYPE_CHECKING:
     from .hints import AnyModel, Array
     from .run import Run
 
-# Of the records of instances that are integrated at a time, per thread, if there are several: about what its part of
-# the caches holds. With 64 MiB a gradient for 20 reactions took a tenth to a fifth more.
-_most_bytes = 1 << 23
+# Of the records of instances that are integrated at a time, if there are several. Per thread of a CPU about what its
+# part of the caches holds: with 64 MiB a gradient for 20 reactions took a tenth to a fifth more. On a GPU what gives
+# all its threads work.
+_most_bytes, _most_bytes_on_gpu = 1 << 23, 1 << 30
 _cure = "leave out adjoint=True, for forward sensitivities"
 
 
@@ -89,6 +90,9 @@ class Adjoint:
         self._wrt = [name for name in self.by if name not in components.states]  # chosen parameters
         self._times = _times(samples, self._options["time"])
         self._capacity, self._threads = 256, 1  # records of an instance, and threads, at first
+        device = self._options["device"]
+        self._gpu = int(device.partition(":")[2]) if device.startswith("cuda") else None
+        self._most_on_gpu = _most_bytes_on_gpu
         self._place = [components.states.index(name) if name in components.states else
                        len(components.states) + self._wrt.index(name) for name in self.by]
         self._quantities = [self._quantity(one) for one in self.of]
@@ -131,12 +135,13 @@ class Adjoint:
             functions += self._action(one, writer, number, v, [*symbols, sym.time], count)
         are_events = ", ".join("true" if isinstance(one, Event) else "false" for one in self._actions)
         body = "\n\n".join("\n".join(f"    {line}" for line in function) for function in functions)
-        return (f"#include <myriad/python/adjoint_library.hpp>\n\n{text}\nstruct {struct}_adjoint : {struct} {{\n"
+        library = "adjoint_library.hpp" if self._gpu is None else "device_adjoint.cuh"
+        return (f"#include <myriad/python/{library}>\n\n{text}\nstruct {struct}_adjoint : {struct} {{\n"
                 f"    static constexpr int n_wrt = {chosen}, n_quantity = {len(self.of)}, "
                 f"n_action = {len(self._actions)};\n"
                 f"    static constexpr bool is_event[] = {{{are_events or 'false'}}};\n\n{body}\n}};\n"
                 f"using myriad_method = {method_type(self.method)};\n"
-                f"MYRIAD_ADJOINT_LIBRARY({struct}_adjoint, myriad_method)\n")
+                f"MYRIAD_ADJOINT({struct}_adjoint, myriad_method)\n")
 
     def _action(self, one: Event | Stop, writer: _Writer, number: int, v: list[Any], symbols: list[Any],
                 count: str) -> list[list[str]]:
@@ -153,7 +158,9 @@ class Adjoint:
         return [*made, writer.function("slope_of_event", f"{count} + 1", of_event, [this])] if of_event else made
 
     @functools.cached_property
-    def _kernel(self) -> Callable[..., None]:
+    def _kernel(self) -> Any:
+        if self._gpu is not None:
+            return nvrtc.single_kernel(self.source(), "myriad_adjoint", self._gpu)
         by, source = compiler.compiler(), self.source()
         loaded = cache.obtain(by.made_from(source), lambda folder: compiler._compile(by, source, folder),
                               ctypes.CDLL).loaded
@@ -167,16 +174,20 @@ class Adjoint:
         """The quantities at the times, [instance, time, quantity], derivatives of a loss by the components, [instance,
         component], and the statuses. `weights_of(part, values)` gives the derivatives of the loss by the values of a
         part of the instances. Instances that failed have NaN. They are integrated in groups whose records fit
-        into 8 MiB for each thread."""
+        into 8 MiB for each thread, or 1 GiB of a GPU."""
         count, at = len(rows), self._times
         values = np.full((count, 1 if at is None else len(at), len(self.of)), np.nan)
         gradient = np.full((count, len(self.by)), np.nan)
         status = np.zeros(count, np.int32)
         first = 0
         while first < count:
-            group = max(1, self._threads * _most_bytes // (8 * (len(self._recorded.states) + 1) * self._capacity))
+            most = self._threads * _most_bytes if self._gpu is None else self._most_on_gpu
+            group = max(1, most // (8 * (len(self._recorded.states) + 1) * self._capacity))
             part = slice(first, min(count, first + group))
             run = self._record(rows[part])
+            if self._gpu is not None and group > 1 and not run.device.has_samples():  # they took too much of its memory
+                self._most_on_gpu //= 2
+                continue
             stored, kept = run.stored_samples, self._capacity
             longest = max(int(stored.max()), int(run.steps("accepted").max())) + 1
             self._capacity, self._threads = longest + longest // 8, run.report.threads  # for what follows
@@ -184,7 +195,8 @@ class Adjoint:
                 continue
             done = run.status == status_names.index("success")
             self._check_actions(run, done)
-            call = _Call(run, at, self._components, self._counters)
+            call = (_Call(run, at, self._components, self._counters) if self._gpu is None else
+                    _CallOnGpu(run, at, self._components, self._counters, self._gpu))
             values[part] = call.values(self._kernel, len(self.of))
             values[part][~done] = np.nan
             weights = np.ascontiguousarray(weights_of(part, values[part]), float)
@@ -303,12 +315,12 @@ def _checked_options(options: Mapping[str, Any]) -> dict[str, Any]:
         raise _refuse("it is in double precision alone")
     if made.get("interpreted"):
         raise _refuse("the model is interpreted")
-    devices = made.get("device", "auto")
-    if devices == "auto":
-        made["device"] = "cpu"
-    elif not str(devices).startswith("cpu"):
-        raise Error(f"device is {devices!r}, and an adjoint is computed on the CPU alone: give device=\"cpu\", or "
-                    f"{_cure}")
+    if (device := made.get("device", "auto")) == "auto":
+        device = "cpu"
+    names, _ = device_names(device, None)
+    if len(names) > 1:
+        raise _refuse(f"device= names several devices, {', '.join(names)}")
+    made["device"] = names[0]
     begin, end = ends_of(made.get("time"))
     if any(np.ndim(numbers(one, "time")) for one in (begin, end)):
         raise _refuse("the instances have time domains of their own")
@@ -329,7 +341,7 @@ def _times(samples: Any, domain: Any) -> Array | None:
 
 
 class _Call:
-    """`adjoint_call` of adjoint_library.hpp for a run of which all steps are recorded."""
+    """`adjoint_call` of adjoint_pack.hpp for a run of which all steps are recorded."""
 
     class _Arguments(ctypes.Structure):
         _fields_ = [("size", ctypes.c_int64), *((name, ctypes.c_void_p) for name in (
@@ -343,8 +355,8 @@ class _Call:
         self._size, self._samples, self._threads = run.size, 1 if times is None else len(times), run.report.threads
         self._kept: list[Any] = [run]  # what addresses are of
 
-        def all_of(kind: str) -> list[Array]:
-            return [run._last_values([kind])[name] for name in components.names[kind]]
+        def all_of(kind: str) -> list[int]:
+            return [self._address(run._last_values([kind])[name]) for name in components.names[kind]]
 
         def shared(kind: str, type: Any) -> Array:
             return np.array([ensemble.array(kind)[run._components.place[name][1]] for name in components.names[kind]],
@@ -352,47 +364,69 @@ class _Call:
 
         self._arguments = self._Arguments(
             size=run.size, stored=self._address(np.ascontiguousarray(run.stored_samples, np.int32)),
-            time=self._address(ensemble.samples(-1)),
-            state=self._addresses([run.samples[name] for name in components.states]),
-            acted=self._addresses([run.samples[name] for name in counters]),
-            acted_in_all=self._addresses([run.states[name] for name in counters]),
-            parameter=self._addresses(all_of("parameter")), shared=self._address(shared("shared", float)),
+            time=self._records(run, None), state=self._table([self._records(run, name) for name in components.states]),
+            acted=self._table([self._records(run, name) for name in counters]),
+            acted_in_all=self._table([self._address(run.states[name]) for name in counters]),
+            parameter=self._table(all_of("parameter")), shared=self._address(shared("shared", float)),
             shared_integer=self._address(shared("shared_integer", np.int32)),
             sample_time=None if times is None else self._address(times), samples=self._samples)
 
     def _address(self, array: Array) -> int:
+        """Of the values of an array, where the kernel reads them."""
         self._kept.append(array)
         return array.ctypes.data
 
-    def _addresses(self, arrays: Sequence[Array]) -> int:
-        made = (ctypes.c_void_p * max(len(arrays), 1))(*map(self._address, arrays))
-        self._kept.append(made)
-        return ctypes.addressof(made)
+    def _table(self, addresses: Sequence[int]) -> int:
+        return self._address(np.array([*addresses, 0], np.uintp))
 
-    def _run(self, kernel: Callable[..., None]) -> None:
-        """Divides the instances among threads, by whole packs."""
+    def _records(self, run: Run, name: str | None) -> int:
+        """The address of the records of a state, or of time."""
+        return self._address(run._ensemble.samples(-1) if name is None else run.samples[name])
+
+    def _run(self, kernel: Any, found: Array, result: str) -> Array:
+        """Computes a result. Divides the instances among threads, by whole packs."""
+        setattr(self._arguments, result, found.ctypes.data)
         part = max(64, -(-self._size // (4 * self._threads)) // 64 * 64)
         address = ctypes.addressof(self._arguments)
         parts = [(address, first, min(first + part, self._size)) for first in range(0, self._size, part)]
         if len(parts) == 1 or self._threads == 1:
             kernel(address, 0, self._size)
-            return
+            return found
         with ThreadPoolExecutor(self._threads) as pool:
             for _ in pool.map(lambda one: kernel(*one), parts):
                 pass
-
-    def values(self, kernel: Callable[..., None], quantities: int) -> Array:
-        """The quantities at the times."""
-        found = np.full((self._size, self._samples, quantities), np.nan)
-        self._arguments.values = found.ctypes.data
-        self._run(kernel)
         return found
 
-    def gradient(self, kernel: Callable[..., None], weights: Array, components: int) -> Array:
+    def values(self, kernel: Any, quantities: int) -> Array:
+        """The quantities at the times."""
+        return self._run(kernel, np.full((self._size, self._samples, quantities), np.nan), "values")
+
+    def gradient(self, kernel: Any, weights: Array, components: int) -> Array:
         """The derivatives of a loss that has these derivatives by the values."""
-        found = np.full((self._size, components), np.nan)
-        weights = np.ascontiguousarray(weights)
-        self._arguments.values, self._arguments.weights = None, weights.ctypes.data
-        self._arguments.gradient = found.ctypes.data
-        self._run(kernel)
+        self._arguments.values, self._arguments.weights = None, self._address(np.ascontiguousarray(weights))
+        return self._run(kernel, np.full((self._size, components), np.nan), "gradient")
+
+
+class _CallOnGpu(_Call):
+    """The same for a run whose records are on a GPU. What else the kernel reads is copied there."""
+
+    def __init__(self, run: Run, times: Array | None, components: Components, counters: Sequence[str],
+                 gpu: int) -> None:
+        self._gpu = gpu
+        super().__init__(run, times, components, counters)
+
+    def _address(self, array: Array) -> int:
+        array = np.ascontiguousarray(array)
+        memory = _core.GpuMemory(self._gpu, max(array.nbytes, 8))
+        memory.write(0, array)
+        self._kept.append(memory)
+        return memory.address
+
+    def _records(self, run: Run, name: str | None) -> int:
+        return run.device.samples(name).address
+
+    def _run(self, kernel: Any, found: Array, result: str) -> Array:
+        setattr(self._arguments, result, self._address(found))
+        kernel.run(bytes(self._arguments), self._size)
+        self._kept.pop().read(0, found)
         return found

@@ -14,6 +14,8 @@ from .derivatives import dependencies, derivatives
 from .expression import (as_number, condition, draws, infix, integer, is_long, number_text, real, symbols_of, text,
                          walk, write)
 from .mass_matrix import left_sides, mass_entries
+from .table import unrolled
+from .units import CouplingTable
 
 if TYPE_CHECKING:
     from .expression import Node
@@ -84,10 +86,11 @@ def generic_problem(roots: Iterable[Node]) -> Node | None:
 
 
 class Names:
-    """The names that a model's functions use for their arguments: the usual ones unless a component has that name."""
+    """The names that a model's functions use for their arguments: the usual ones unless a component, or something of
+    the names in `others`, has that name."""
 
-    def __init__(self, model: Model) -> None:
-        self.taken = {*model.component_names, "i", "j"}
+    def __init__(self, model: Model, others: Iterable[str] = ()) -> None:
+        self.taken = {*model.component_names, *others, "i", "j", "r"}
         self.y = self._free("y", "s", "u", "state_")
         self.p = self._free("p", "in", "inputs")
         self.t = self._free("t", "time", "t_")
@@ -123,8 +126,8 @@ class Body:
         self.used_names = names.taken | {names.y, names.p, names.t, names.R, names.lane, names.number, "event", "stop"}
         uses: dict[int, int] = {}
         order = walk(roots)
-        computed = {(node.op.partition(".")[0], *map(id, node.args)) if node.op in _shared_work else node: node
-                    for node in order}
+        computed = {(node.op.partition(".")[0], node.op == "dot" and node.value[0], *map(id, node.args))
+                    if node.op in _shared_work else node: node for node in order}
         for node in computed.values():
             for argument in node.args:
                 uses[id(argument)] = uses.get(id(argument), 0) + 1
@@ -184,25 +187,44 @@ class Body:
         return found
 
     def _product(self, node: Node, order: Iterable[Node]) -> None:
-        """Products of rows of a table with one vector, in a loop over all rows that are used."""
-        table, _ = node.value
-        n, kind = len(node.args), self.names.R
+        """Products of rows of a table with one vector, in a loop over all rows that are used, or term by term."""
+        table, row = node.value
+        n, kind = len(node.args), self.names.of_lane if self.scalar else self.names.R
+        of_units = isinstance(table, CouplingTable)
+        if of_units and (table.bandwidth is not None or n <= unrolled):
+            self.named[id(node)] = self._name("coupled")
+            self.lines.append(f"const auto {self.named[id(node)]} = {self.text(table.sum(row, node.args))};")
+            return
+
+        def summed(one: Node) -> list[Node]:
+            return table.by_column(one.value[1], one.args) if of_units else list(one.args)
+
         same = [other for other in order if other.op == "dot" and other.value[0] == table and
-                all(a is b for a, b in zip(other.args, node.args))]
-        first, last = min(o.value[1] for o in same) // n, max(o.value[1] for o in same) // n
+                all(a is b for a, b in zip(summed(other), summed(node)))]
+        first, last = min(o.value[1] for o in same), max(o.value[1] for o in same)
         vector, product, total = self._name("vector"), self._name("product"), self._name("total")
-        if self.scalar:
-            kind = self.names.of_lane
-        self.lines.append(f"const myriad::vec<{kind}, {n}> {vector} = {{{', '.join(map(self.text, node.args))}}};")
+        self.lines.append(f"const myriad::vec<{kind}, {n}> {vector} = {{{', '.join(map(self.text, summed(node)))}}};")
         self.lines.append(f"myriad::vec<{kind}, {last - first + 1}> {product};")
-        row = f"({first} + i)" if first else "i"
-        self.lines += [f"for (int i = 0; i < {last - first + 1}; ++i) {{",
-                       f"    {kind} {total} = {self.shared}[{table.name} + {row} * {n}] * {vector}[0];",
-                       f"    for (int j = 1; j < {n}; ++j) {total} += "
-                       f"{self.shared}[{table.name} + {row} * {n} + j] * {vector}[j];",
-                       f"    {product}[i] = {total};", "}"]
+        row_number, rows = f"({first} + i)" if first else "i", f"for (int i = 0; i < {last - first + 1}; ++i)"
+        entry = f"{self.shared}[{table.name}"
+        if of_units and table.form == "full":  # four neighbouring rows at once, of which additions need not wait
+            first, number, each = 0, self._name("row"), "for (int r = 0; r < 4; ++r)"
+            self.lines[-1] = f"myriad::vec<{kind}, {n}> {product};"
+            self.lines += [f"for (int i = 0; i < {n}; i += 4) {{",
+                           f"    const int {number} = i < {n - 4} ? i : {n - 4};",
+                           f"    myriad::vec<{kind}, 4> {total};",
+                           f"    {each} {total}[r] = {entry} + {number} + r] * {vector}[0];",
+                           f"    for (int j = 1; j < {n}; ++j)",
+                           f"        {each} {total}[r] += {entry} + j * {n} + {number} + r] * {vector}[j];",
+                           f"    {each} {product}[{number} + r] = {total}[r];", "}"]
+        else:
+            begin, start, at = (entry, row_number, f"({row_number} + j) % {n}") if of_units else (
+                f"{entry} + {row_number} * {n}", "0", "j")
+            self.lines += [f"{rows} {{", f"    {kind} {total} = {begin}] * {vector}[{start}];",
+                           f"    for (int j = 1; j < {n}; ++j) {total} += {begin} + j] * {vector}[{at}];",
+                           f"    {product}[i] = {total};", "}"]
         for other in same:
-            self.named[id(other)] = f"{product}[{other.value[1] // n - first}]"
+            self.named[id(other)] = f"{product}[{other.value[1] - first}]"
 
     def early(self, node: Node, name: str) -> str:
         """The name of a variable with the value that the expression has here."""
@@ -498,7 +520,7 @@ class Writer:
         assigned: set[int] = set()
         for target, value in targets:
             if body.reads(value) & assigned:
-                early[id(target)] = body.early(value, "next_" + target.value[1])
+                early[id(target)] = body.early(value, "next_" + self.title(target))
             assigned.add(id(target))
         conditions = {action: body.early(value, "ends") if body.reads(value) & assigned else body.text(value)
                       for action, value in ends.items()}
@@ -515,6 +537,10 @@ class Writer:
             statement = f"{self.in_hook(target)} {operator} {written};"
             body.lines.append(statement if only_if is None else f"if ({body.text(only_if)}) {statement}")
         return body.lines, conditions
+
+    def title(self, target: Node) -> str:
+        """The name of a component."""
+        return str(target.value[1])
 
     @staticmethod
     def plan(target: Node, value: Node, scalar: bool) -> tuple[Node | None, str, Node]:

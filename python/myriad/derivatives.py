@@ -64,7 +64,7 @@ _partials: dict[str, Callable[..., Sequence[Any]]] = {
     "max": lambda f, a, b: (a >= b, ~(a >= b)),
     "pow": lambda f, a, b: _of_power(f, a, b, ex.pow),
     "powr": lambda f, a, b: _of_power(f, a, b, ex.powr),
-    "dot": lambda f, *vector: [ex.make("element", value=(f.value[0], f.value[1] + j)) for j in range(len(vector))],
+    "dot": lambda f, *_: [ex.make("element", value=(f.value[0], place)) for place in f.value[0].places(f.value[1])],
     "find_interval": lambda f, *_: (None,),
 }
 

@@ -103,15 +103,28 @@ class DeviceResults:
         name = name if name is time else name_of(name)
         kind, number = run._components.place.get(name, (name, 0))
         if name in run._sampled:
-            make = functools.partial(run._ensemble.samples, run._sampled[name], on_device=True)
+            return self.samples(name)
         elif name in run._recorded:
             make = functools.partial(run._records.records, *run._recorded[name], on_device=True)
         elif kind in (*of_instances, "t", "status", "phases_done"):
             make = functools.partial(run._ensemble.device_array, kind, number)
         else:
             raise KeyError(f"there is no {name!r} on the GPU: ask run[{name!r}]")
-        capsule = make()
-        if capsule is None:
-            raise Error(f"{name!r} is not on a GPU: the run was on the CPU, or in parts, as its results would have "
-                        "taken much of the GPU's memory; run[...] has them on the host")
-        return DeviceArray(capsule, make)
+        return _on_gpu(name, make)
+
+    def samples(self, name: str | None) -> DeviceArray:
+        """The samples of a state, or their times."""
+        number = -1 if name is None else self._run._sampled[name]
+        return _on_gpu(name or "time", functools.partial(self._run._ensemble.samples, number, on_device=True))
+
+    def has_samples(self) -> bool:
+        """Whether samples are there, and were not copied to the host in parts."""
+        return self._run._ensemble.samples(-1, on_device=True) is not None
+
+
+def _on_gpu(name: str, make: Callable[[], Any]) -> DeviceArray:
+    capsule = make()
+    if capsule is None:
+        raise Error(f"{name!r} is not on a GPU: the run was on the CPU, or in parts, as its results would have "
+                    "taken much of the GPU's memory; run[...] has them on the host")
+    return DeviceArray(capsule, make)

@@ -784,7 +784,7 @@ def text(node: Node) -> str:
             return number_text(n.value) if n.op == "constant" else str(n.value)
         if n.op == "element":
             return f"{n.value[0].name}[{n.value[1]}]"
-        return f"({n.value[0].name} @ vector)[{n.value[1] // len(n.args)}]" if n.op == "dot" else None
+        return f"({n.value[0].name} @ vector)[{n.value[1]}]" if n.op == "dot" else None
 
     if len(walk([node])) > 200:
         return f"({node.op} of {len(walk([node]))} operations)"
@@ -826,8 +826,9 @@ def evaluate(roots: Sequence[Node], values: Mapping[Any, Any]) -> list[Any]:
             elif node.op == "element":
                 known[id(node)] = node.value[0].values.flat[node.value[1]]
             elif node.op == "dot":
-                table, start = node.value
-                known[id(node)] = sum(table.values.flat[start + j] * known[id(a)] for j, a in enumerate(node.args))
+                table, row = node.value
+                known[id(node)] = sum(table.values.flat[place] * known[id(a)]
+                                      for place, a in zip(table.places(row), node.args))
             elif node.op == "lookup":
                 table, first, stride, rows = node.value
                 row = np.clip(np.nan_to_num(known[id(node.args[0])]), 0, rows - 1).astype(int)

@@ -36,6 +36,7 @@ class Extended(ComponentNames):
         self.shared_values = getattr(model, "shared_values", {})
         self.aliases, self.outputs = getattr(model, "aliases", {}), getattr(model, "outputs", {})
         self.constants = getattr(model, "constants", {})
+        self.hidden: frozenset[str] = getattr(model, "hidden", frozenset())
         self.units, self.time_unit = getattr(model, "units", {}), getattr(model, "time_unit", "")
         self.defaults = {**getattr(model, "defaults", self.shared_values), **defaults}
 

@@ -21,10 +21,10 @@ from .expression import (Node, as_condition, as_number, draws, evaluate, integer
 from .mass_matrix import left_sides, read_mass_matrix
 from .methods import stiff
 from .parse import from_sympy, parse, parse_equations, sympy_name
-from .table import element_name, tables_of
+from .table import tables_of
 from .trigger import Edge, Queue, Sides, Trigger, check, edges_of, keep_values, needs_queue
 from .unit_form import unit_form
-from .units import only_units, spread, together
+from .units import CouplingTable, only_units, spread, together, unit_by_unit
 from .whole_numbers import check_constants
 
 if TYPE_CHECKING:
@@ -371,6 +371,9 @@ class Model(kinds.ComponentNames):
             what = f"event {one.name}"
             one.function = to_real(self._real(self._value(given.function, what), what))
             one.do = self._assignments(given.do, what, line=given.line)
+        if self.units_of_states is not None:  # one unit after the other
+            order = unit_by_unit([str(one.name) for one in made], self.units_of_states.count)
+            made.sort(key=lambda one: order.index(str(one.name)))
         return made
 
     def _stops(self, stops: Stop | Sequence[Stop]) -> list[Stop]:
@@ -536,6 +539,8 @@ class Model(kinds.ComponentNames):
         if self.units_of_states is not None:
             for kind in ("parameter", "shared"):
                 components[kind] = together(components[kind], self.units_of_states.count)
+            for kind in kinds.accessories:
+                components[kind] = unit_by_unit(components[kind], self.units_of_states.count)
         missing = [n for n in components["state"] if n not in self.states]
         if missing:
             symbol = next(s for s in found + declared if s.value == ("state", missing[0]))
@@ -551,8 +556,9 @@ class Model(kinds.ComponentNames):
                         "random numbers are for generate= alone; let it set a parameter")
         check_constants(everything, waits + [e for _, assignments in hooks for _, e in assignments])
         everything += walk([e for _, e in self.generate])
-        self.tables = tables_of(everything)
-        self.shared_values = {element_name(t, i): float(v) for t in self.tables for i, v in enumerate(t.values.flat)}
+        # Those of couplings are last, as in C++.
+        self.tables = sorted(tables_of(everything), key=lambda t: isinstance(t, CouplingTable))
+        self.shared_values = {t.element_name(i): float(v) for t in self.tables for i, v in enumerate(t.values.flat)}
         self.scalar_shared = components["shared"]
         self._set_names({**components, "state": self.states,
                          "shared": [*self.scalar_shared, *self.shared_values]})

@@ -229,6 +229,13 @@ def prepare(header: str, struct: str, method: str, real: str, shared: tuple[int,
     _cached(*_program(header, struct, method, real, shared, device, generates), lambda program: True)
 
 
+def single_kernel(source: str, name: str, device: int) -> _core.GpuKernel:
+    """The kernel of that name in a file that is compiled for a GPU by its number."""
+    _, capability, _ = _core.gpu(device)
+    found: _core.GpuKernel = _cached(source, capability, lambda program: _core.GpuKernel(program, name, device)).loaded
+    return found
+
+
 @functools.cache
 def load_study_kernels(device: int) -> None:
     """Loads the kernels that set and reduce the instances of studies on a GPU by its number."""

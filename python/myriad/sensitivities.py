@@ -19,7 +19,7 @@ from .extended import Extended
 from .inputs import real
 from .statuses import status_names
 from .symbols import symbol as symbol_of
-from .symbols import time
+from .symbols import t_begin, t_end, time
 
 if TYPE_CHECKING:
     from .hints import AnyModel, Array, Component, SomeComponents
@@ -29,12 +29,18 @@ if TYPE_CHECKING:
 __all__ = ["with_sensitivities", "WithSensitivities", "Sensitivities"]
 
 _not_controlled = 1e30  # a tolerance that no error exceeds
+_domain = {t_begin: "t_begin", t_end: "t_end"}  # the ends of the time domain, by which there are derivatives too
+
+
+def _name_of(components: Components, key: Component) -> str:
+    """The name of what derivatives are by."""
+    return _domain[key] if isinstance(key, Node) and key in _domain else components.component(key)
 
 
 def with_sensitivities(model: AnyModel, by: SomeComponents, control: bool = True) -> WithSensitivities:
-    """The model with the derivatives of its solution by some of its components: initial states, parameters and shared
-    values, whose errors take part in choosing the steps unless `control` is False. `solve(model, ...,
-    sensitivities=[k, x])` makes one."""
+    """The model with the derivatives of its solution by some of its components, initial states, parameters and shared
+    values, and by `myriad.t_begin` and `myriad.t_end`. Their errors take part in choosing the steps unless `control` is
+    False. `solve(model, ..., sensitivities=[k, x])` makes one."""
     return WithSensitivities(model, by, control)
 
 
@@ -53,8 +59,13 @@ class WithSensitivities(Extended):
                         "be independent: solve its algebraic equations in the others")
         kinds_of = ("state", "parameter", "shared")
         wanted = [by] if isinstance(by, (str, Node)) else list(by)
-        names = [own.component(one) for one in wanted]
+        names = [_name_of(own, one) for one in wanted]
         possible = [name for name in own.of(kinds_of) if name not in own.tables]
+        both = next((name for name in _domain.values() if name in names and name in own.place), None)
+        if both is not None:
+            raise Error(f"the model has a component '{both}'{line}, which cannot be told from the end of the time "
+                        "domain of that name: rename it")
+        possible += _domain.values()
         for name in names:
             if name not in possible:
                 raise unknown(name, possible, "component that sensitivities can be by")
@@ -69,24 +80,23 @@ class WithSensitivities(Extended):
         self.by = names
         self.control = control  #: whether errors of derivatives take part in choosing the steps
         self.n_original = len(own.states)
-        self.places = [own.place[name] for name in names]
+        self.places = [own.place.get(name, ("domain", 0)) for name in names]
         accessories = [f"{a}_by_{k}" for k in names for a in own.names["accessory"]]
         start = {f"{c}_by_{k}": float(c == k) for k in names for c in own.states}
         super().__init__(model, {"state": list(start), "accessory": [
-            *accessories, *(f"time_by_{k}" for k in names), "time_of_event", "undefined_derivatives"]}, start,
+            *accessories, *(f"time_by_{k}" for k in names), "time_of_event", "undefined_derivatives",
+            *(["phase_carries_on", "phase_goes_to_t_end"] if set(names) & set(_domain.values()) else [])]}, start,
             "sensitivities")
 
     def source(self) -> tuple[str, str]:
         """The text that kernels are compiled from, and the name of its struct."""
         text, struct = self.model.source()
-        wrt = ", ".join(f"static_cast<{self._enumeration(kind, struct)}>({number})" for kind, number in self.places)
+        wrt = ", ".join(f"myriad::time_domain::{name}" if kind == "domain" else
+                        f"static_cast<decltype({struct}::n_{kind})>({number})"
+                        for name, (kind, number) in zip(self.by, self.places))
         template = "with_sensitivities" if self.control else "uncontrolled_sensitivities"
         return (f"{text}\n#include <myriad/sensitivity.hpp>\n"
                 f"using {struct}_sensitivities = myriad::{template}<{struct}, {wrt}>;\n"), f"{struct}_sensitivities"
-
-    @staticmethod
-    def _enumeration(kind: str, struct: str) -> str:
-        return f"decltype({struct}::n_{kind})"
 
     def __repr__(self) -> str:
         return f"<sensitivities of {self.model!r} by {', '.join(self.by)}>"
@@ -132,26 +142,30 @@ class WithSensitivities(Extended):
         """The derivatives of initial values that follow from components that sensitivities are by, as defaults of the
         derivatives at the start; refuses parameters that follow from them."""
         own = Components(self.model)
+        starts_with = {k: "t" if k == _domain[t_begin] else k for k in self.by}  # what defaults read
         for name in own.of(("parameter", "shared")):
-            if name not in self.by and own.follows(name, self.by, given):
+            if name not in self.by and own.follows(name, starts_with.values(), given):
                 raise Error(f"the value of '{name}' follows from components that sensitivities are by: give it in the "
                             "sweep")
         found: dict[str, Any] = {}
 
         def derivative(name: str, k: str) -> Any:
-            if name in given or name in self.by or not own.follows(name, [k], given):
+            if name in given or name in self.by or not own.follows(name, [starts_with[k]], given):
                 return folding.constant(float(name == k))
             default = own.defaults[name]
-            symbols = [s for s in symbols_of([default]) if s is not time]
+            by_time = k == _domain[t_begin]
+            symbols = [s for s in symbols_of([default]) if by_time or s is not time]
             partials = derivatives([default], symbols)
             if partials is None:
                 raise Error(f"the initial value of '{name}' looks up a table and has no derivatives: give it in start=")
-            return folding.total([folding.multiply(folding.number(partial), derivative(symbols[i].value[1], k))
+            return folding.total([folding.multiply(folding.number(partial), folding.constant(1.0) if symbols[i] is time
+                                                   else derivative(symbols[i].value[1], k))
                                   for i, partial in partials[0].items()])
 
         for name in own.of(("state", "accessory")):
             if name not in given and name not in self.by:
-                found |= {f"{name}_by_{k}": derivative(name, k) for k in self.by if own.follows(name, [k], given)}
+                found |= {f"{name}_by_{k}": derivative(name, k)
+                          for k in self.by if own.follows(name, [starts_with[k]], given)}
         return found
 
 
@@ -168,7 +182,7 @@ class Sensitivities(Mapping[Any, Any]):
         components = self._run._components
         if isinstance(key, tuple):
             of, wrt = key
-            k = components.component(wrt)
+            k = _name_of(components, wrt)
             if k not in self.by:
                 raise KeyError(f"there are no sensitivities by {k!r}: they are by {', '.join(self.by)}")
             return self._by(of, k)

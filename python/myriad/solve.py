@@ -250,7 +250,8 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
                       that do not are refused
     progress          True for a bar, or a function of the numbers of instances done and of all
     sensitivities     components that derivatives of the results are wanted by, as in `[k, x]`: initial states,
-                      parameters and shared values; `run.sensitivity[x, k]` are then the derivatives
+                      parameters and shared values, and `myriad.t_begin` and `myriad.t_end`, the ends of the time
+                      domain; `run.sensitivity[x, k]` are then the derivatives
     sensitivity_control  whether their errors take part in choosing the steps; without, the solution is that of a call
                       without sensitivities
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 __all__ = ["table"]
 
-_unrolled = 8  # vectors up to this length are multiplied term by term in the generated code
+unrolled = 8  # vectors up to this length are multiplied term by term in the generated code
 
 
 def table(name: str, values: npt.ArrayLike) -> Table:
@@ -50,7 +50,7 @@ class Table:
         self.values = np.array(array, float)
         self.values.setflags(write=False)
         self.shape = self.values.shape
-        self._key = (name, self.shape, hashlib.sha256(self.values.tobytes()).hexdigest())
+        self._key: tuple[Any, ...] = (name, self.shape, hashlib.sha256(self.values.tobytes()).hexdigest())
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Table) and self._key == other._key
@@ -80,23 +80,32 @@ class Table:
     def _element(self, number: int) -> Expression:
         return make("element", value=(self, number))
 
+    def places(self, row: int) -> Sequence[int]:
+        """The numbers of the elements that the row of a product sums, in the order of the sum."""
+        columns = self.shape[-1]
+        return range(row * columns, (row + 1) * columns)
+
+    def element_name(self, number: int) -> str:
+        """The name of an element, as in 'A[0,1]'."""
+        return f"{self.name}[{','.join(str(i) for i in np.unravel_index(number, self.shape))}]"
+
+    def sum(self, row: int, factors: Iterable[Any]) -> Expression:
+        """The row of a product term by term."""
+        return sum(self._element(place) * factor for place, factor in zip(self.places(row), factors))
+
     def __matmul__(self, vector: Any) -> Any:
         line = at(users_line())
         vector = np.asarray(vector, dtype=object)
-        columns = self.shape[-1]
+        columns, rows = self.shape[-1], range(self.values.size // self.shape[-1])
         if vector.shape != (columns,):
             raise Error(f"the table {self.name} of shape {self.shape} is multiplied by a vector of shape {vector.shape}"
                         f"{line}: give one expression for each of its {columns} columns")
         entries = tuple(to_real(as_number(e)) for e in vector)
-        if columns > _unrolled:
-            rows = [make("dot", entries, (self, row * columns)) for row in range(self.values.size // columns)]
-        else:
-            rows = [sum(self._element(start + j) * e for j, e in enumerate(entries))
-                    for start in range(0, self.values.size, columns)]
+        sums = [make("dot", entries, (self, row)) if columns > unrolled else self.sum(row, entries) for row in rows]
         if len(self.shape) == 1:
-            return rows[0]
-        product = np.empty(len(rows), object)
-        product[:] = rows
+            return sums[0]
+        product = np.empty(len(sums), object)
+        product[:] = sums
         return product
 
     def __rmatmul__(self, vector: Any) -> NoReturn:
@@ -107,8 +116,3 @@ class Table:
 def tables_of(nodes: Iterable[Node]) -> list[Table]:
     """The tables that these nodes refer to, each once."""
     return list(dict.fromkeys(n.value[0] for n in nodes if n.op in ("element", "dot", "lookup", "find_interval")))
-
-
-def element_name(table: Table, number: int) -> str:
-    """The name of an element, as in 'A[0,1]'."""
-    return f"{table.name}[{','.join(str(i) for i in np.unravel_index(number, table.shape))}]"

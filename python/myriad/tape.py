@@ -13,7 +13,6 @@ from .compiler import Kernel
 from .errors import CannotInterpret, Error
 from .expression import constant, fma, integer, is_long, walk, where
 from .model import Model
-from .table import element_name
 
 if TYPE_CHECKING:
     from .components import Components
@@ -110,19 +109,20 @@ class Writer:
             if node.op == "symbol":
                 self._symbol(node, to)
             elif node.op == "element":
-                self._emit("load_shared", to, self.place[element_name(*node.value)][1])
+                table, number = node.value
+                self._emit("load_shared", to, self.place[table.element_name(number)][1])
             elif node.op == "dot":
-                table, start = node.value
-                for j, argument in enumerate(arguments):
+                table, row = node.value
+                for j, (place, argument) in enumerate(zip(table.places(row), arguments)):
                     product = term if j else to
-                    self._emit("load_shared", product, self.place[element_name(table, start + j)][1])
+                    self._emit("load_shared", product, self.place[table.element_name(place)][1])
                     self._emit("multiply", product, product, argument)
                     if j:
                         self._emit("add", to, to, product)
             elif node.op in ("lookup", "find_interval"):
                 table, first, *numbers = node.value
                 stride, rows = numbers if len(numbers) == 2 else (1, *numbers)
-                place = self.place[element_name(table, first)][1]
+                place = self.place[table.element_name(first)][1]
                 self._emit(node.op, to, rows, arguments[0], stride, float(place))
             elif node.type == integer and node.op in _of_whole_numbers:
                 first, second = arguments

@@ -3,16 +3,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import symbols as sym
 from .errors import Error, at, users_line
-from .expression import Node, Vector, integer, real, vector
+from .expression import Node, Vector, as_number, integer, make, real, to_real, vector
 from .grid import as_numbers
-from .table import table
+from .table import Table
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -114,7 +114,7 @@ class Units:
 
     def full_coupling(self, name: str, matrix: npt.ArrayLike) -> Coupling:
         """A coupling by any matrix: `(A @ x)[i]` is the sum of `matrix[i, j] * x[j]` over all units."""
-        return Coupling(name, self._square(name, matrix), None)
+        return Coupling(name, self._square(name, matrix), "full")
 
     def banded_coupling(self, name: str, matrix: npt.ArrayLike, bandwidth: int) -> Coupling:
         """A coupling by a matrix whose entries are zero but on the diagonal and on `bandwidth` diagonals on either side
@@ -126,8 +126,7 @@ class Units:
             i, j = place[0]
             raise Error(f"entry ({i}, {j}) of the coupling {name} is {array[i, j]}, outside the band of {bandwidth} "
                         f"diagonals on either side{at(users_line())}: give a larger bandwidth")
-        columns = [[i + d for d in range(-bandwidth, bandwidth + 1)] for i in range(self.count)]
-        return Coupling(name, array, [[j for j in row if 0 <= j < self.count] for row in columns])
+        return Coupling(name, array, "banded", bandwidth)
 
     def circulant_coupling(self, name: str, matrix: npt.ArrayLike, bandwidth: int | None = None) -> Coupling:
         """A coupling by a matrix of which every row is the one above it, moved by one place to the right, round the
@@ -142,14 +141,13 @@ class Units:
                         f"{round_the_end[i, j]} in row 0{at(users_line())}: make every row the one above it, moved by "
                         "one place, or give it to full_coupling")
         if bandwidth is None:
-            return Coupling(name, array, None)
+            return Coupling(name, array, "circulant")
         self._check_bandwidth(name, bandwidth, (n - 1) // 2)
         beyond = [j for j in range(n) if array[0, j] != 0 and min(j, n - j) > bandwidth]
         if beyond:
             raise Error(f"entry (0, {beyond[0]}) of the coupling {name} is {array[0, beyond[0]]}, outside the band of "
                         f"{bandwidth} diagonals on either side{at(users_line())}: give a larger bandwidth")
-        return Coupling(name, array, [[(i + d) % n for d in range(-bandwidth, bandwidth + 1)] for i in range(n)],
-                        circulant=True)
+        return Coupling(name, array, "circulant", bandwidth)
 
     def _square(self, name: str, matrix: Any) -> Any:
         sym.check_name(name, "a coupling")
@@ -174,19 +172,53 @@ class Units:
                         f"from 0 to {most}")
 
 
+class CouplingTable(Table):
+    """The matrix of a coupling of `count` units, with the entries that C++'s couplings of that shape have: "full",
+    "banded" or "circulant", with `bandwidth` diagonals on either side of the main one, or all if it is None."""
+
+    def __init__(self, name: str, matrix: Any, form: str, bandwidth: int | None) -> None:
+        self.form, self.bandwidth, self.count = form, bandwidth, len(matrix)
+        self._diagonals = range(self.count) if bandwidth is None else range(-bandwidth, bandwidth + 1)
+        if form == "full":
+            entries = matrix.T  # column by column, so that the entries of neighbouring rows lie side by side
+        else:
+            rows = range(1 if form == "circulant" else self.count)
+            entries = np.array([[matrix[i, (i + d) % self.count] if self._has(i, d) else 0.0 for i in rows]
+                                for d in self._diagonals])
+        super().__init__(name, entries.ravel())
+        self._key = (*self._key, form, bandwidth)
+
+    def _has(self, row: int, diagonal: int) -> bool:
+        return self.form != "banded" or 0 <= row + diagonal < self.count
+
+    def columns(self, row: int) -> list[int]:
+        """The units that the sum of a unit is over, in the order of the sum."""
+        first = 0 if self.form == "full" else row
+        return [(first + d) % self.count for d in self._diagonals if self._has(row, d)]
+
+    def places(self, row: int) -> list[int]:
+        if self.form == "circulant":
+            return list(range(len(self._diagonals)))
+        return [k * self.count + row for k, d in enumerate(self._diagonals) if self._has(row, d)]
+
+    def element_name(self, number: int) -> str:
+        k, row = (number, 0) if self.form == "circulant" else divmod(number, self.count)
+        column = self._diagonals[k] + (0 if self.form == "full" else row)
+        return f"{self.name}[{row},{column % self.count if self.form == 'circulant' else column}]"
+
+    def by_column(self, row: int, values: Sequence[Any]) -> list[Any]:
+        """What a row without a band sums, in the order of the units."""
+        return [value for _, value in sorted(zip(self.columns(row), values), key=lambda pair: pair[0])]
+
+
 class Coupling:
     """A coupling of units by a matrix, whose entries all instances share: `A @ x` are its sums."""
 
     __array_ufunc__ = None  # array @ coupling is refused, and not left to NumPy
 
-    def __init__(self, name: str, matrix: Any, columns: list[list[int]] | None, circulant: bool = False) -> None:
-        self.name, self.matrix, self._columns, self._circulant = name, matrix, columns, circulant
-        if columns is None:
-            self._table = table(name, matrix)
-        elif circulant:
-            self._table = table(name, matrix[0, columns[0]])
-        else:
-            self._table = table(name, np.array([matrix[i, j] for i, row in enumerate(columns) for j in row]))
+    def __init__(self, name: str, matrix: Any, form: str, bandwidth: int | None = None) -> None:
+        self.name, self.matrix = name, matrix
+        self._table = CouplingTable(name, matrix, form, bandwidth)
 
     def __repr__(self) -> str:
         return f"<coupling {self.name} of {len(self.matrix)} units>"
@@ -196,14 +228,9 @@ class Coupling:
         if values.shape != (len(self.matrix),):
             raise Error(f"the coupling {self.name} sums values of shape {values.shape}{at(users_line())}: give one for "
                         f"each of the {len(self.matrix)} units")
-        if self._columns is None:
-            return vector(list(self._table @ values))
-        sums, entry = [], 0
-        for row in self._columns:
-            first = 0 if self._circulant else entry
-            sums.append(sum(self._table[first + k] * values[j] for k, j in enumerate(row)))
-            entry += len(row)
-        return vector(sums)
+        summed = [to_real(as_number(value)) for value in values]
+        return vector([make("dot", tuple(summed[j] for j in self._table.columns(row)), (self._table, row))
+                       for row in range(len(summed))])
 
 
 def one_by_one(chosen: Iterable[Any]) -> list[Any]:
@@ -230,6 +257,15 @@ def together(names: Iterable[str], count: int) -> list[str]:
     first = {f"{base}_{i}": f"{base}_0" for base in of_units(names, count) for i in range(count)}
     every = {base: [name for name in first if first[name] == base] for base in first.values()}
     return list(dict.fromkeys(one for name in names for one in every.get(first.get(name, ""), [name])))
+
+
+def unit_by_unit(names: Iterable[str], count: int) -> list[str]:
+    """The same names, with components that each of so many units has behind the others, one unit after the other."""
+    names = list(names)
+    those = {f"{base}_{i}" for base in of_units(names, count) for i in range(count)}
+    of_each = [name for name in together(names, count) if name in those]
+    return [*(name for name in names if name not in those), *(
+        name for i in range(count) for name in of_each[i::count])]
 
 
 def spread(given: Mapping[Any, Any], what: str, line: tuple[str, int] | None) -> dict[Any, Any]:

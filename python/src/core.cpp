@@ -473,6 +473,25 @@ NB_MODULE(_core, m) {
             copy_on_gpu(device, stream, copies);
         },
         "device"_a, "stream"_a, "copies"_a, nb::call_guard<nb::gil_scoped_release>());
+    using host_array = nb::ndarray<nb::c_contig, nb::device::cpu>;
+    nb::class_<gpu_memory>(m, "GpuMemory")
+        .def(nb::init<int, std::size_t>(), "device"_a, "bytes"_a)
+        .def_prop_ro("address", &gpu_memory::address)
+        .def_prop_ro("bytes", &gpu_memory::bytes)
+        .def("write",
+             [](gpu_memory& m, std::size_t to, const host_array& from) { m.write(to, from.data(), from.nbytes()); })
+        .def("read",
+             [](const gpu_memory& m, std::size_t from, const host_array& to) { m.read(from, to.data(), to.nbytes()); });
+    nb::class_<gpu_kernel>(m, "GpuKernel")
+        .def("__init__",
+             [](gpu_kernel* self, const nb::bytes& image, const std::string& name, int device) {
+                 new (self) gpu_kernel(std::string(image.c_str(), image.size()), name, device);
+             })
+        .def("run", [](const gpu_kernel& k, const nb::bytes& argument, std::int64_t size) {
+            const std::string bytes(argument.c_str(), argument.size());
+            const nb::gil_scoped_release released;
+            k.run(bytes, size);
+        });
     m.def("facts_of_device_array", &facts_of_device_array);
     m.def("facts_of_own_array", &facts_of_own_array);
     m.def("may_use_gpus", &host::may_use_gpus);

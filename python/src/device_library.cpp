@@ -2,6 +2,7 @@
 // Programs loaded on GPUs, and the launch parameters of their kernels.
 #include "device_library.hpp"
 
+#include <cstring>
 #include <utility>
 
 #include "myriad/cuda/devices.cuh"
@@ -60,6 +61,50 @@ void copy_on_gpu(int device, std::uintptr_t stream, const std::vector<copy_of_by
         MYRIAD_CUDA(cudaMemcpyAsync(reinterpret_cast<void*>(one.to), reinterpret_cast<const void*>(one.from), one.bytes,
                                     cudaMemcpyDeviceToDevice, in_stream));
     cuda::check(cudaStreamSynchronize(in_stream), "a copy of results on the GPU");
+}
+
+gpu_memory::gpu_memory(int device, std::size_t bytes) : device_(device) {
+    cuda::require_device({.device = device});
+    const cuda::current_device here(device);
+    memory_ = std::make_unique<cuda::device_memory>();
+    memory_->reserve(bytes);
+}
+gpu_memory::~gpu_memory() {
+    const cuda::current_device here(device_);
+    memory_.reset();
+}
+void gpu_memory::write(std::size_t to, const void* from, std::size_t bytes) {
+    require(to + bytes <= this->bytes(), "a copy ends behind the memory of a GPU");
+    const cuda::current_device here(device_);
+    MYRIAD_CUDA(
+        cudaMemcpyAsync(static_cast<std::byte*>(memory_->data()) + to, from, bytes, cudaMemcpyHostToDevice, nullptr));
+    cuda::check(cudaStreamSynchronize(nullptr), "a copy to a GPU");
+}
+void gpu_memory::read(std::size_t from, void* to, std::size_t bytes) const {
+    require(from + bytes <= this->bytes(), "a copy begins behind the memory of a GPU");
+    const cuda::current_device here(device_);
+    MYRIAD_CUDA(cudaMemcpyAsync(to, static_cast<const std::byte*>(memory_->data()) + from, bytes,
+                                cudaMemcpyDeviceToHost, nullptr));
+    cuda::check(cudaStreamSynchronize(nullptr), "a copy from a GPU");
+}
+
+gpu_kernel::gpu_kernel(const std::string& image, const std::string& name, int device) : device_(device) {
+    cuda::require_device({.device = device});
+    const cuda::current_device here(device);
+    cuda::check(find_kernel(&kernel_, loaded(image), name.c_str()), "finding a kernel");
+    cudaFuncAttributes attributes{};
+    MYRIAD_CUDA(cudaFuncGetAttributes(&attributes, kernel_));
+    block_size_ = attributes.maxThreadsPerBlock;
+}
+void gpu_kernel::run(const std::string& argument, std::int64_t size) const {
+    const cuda::current_device here(device_);
+    std::vector<std::uint64_t> aligned((argument.size() + 7) / 8);
+    std::memcpy(aligned.data(), argument.data(), argument.size());
+    void* arguments[] = {aligned.data()};
+    const dim3 blocks(static_cast<unsigned>((size + block_size_ - 1) / block_size_));
+    cuda::check(cudaLaunchKernel(kernel_, blocks, dim3(static_cast<unsigned>(block_size_)), arguments, 0, nullptr),
+                "a launch");
+    cuda::check(cudaStreamSynchronize(nullptr), "a kernel");
 }
 
 namespace {

@@ -38,6 +38,35 @@ struct copy_of_bytes {
 };
 void copy_on_gpu(int device, std::uintptr_t stream, const std::vector<copy_of_bytes>& all);
 
+/// Memory of a GPU for a `gpu_kernel`. Throws `error` if there is too little.
+class gpu_memory {
+public:
+    gpu_memory(int device, std::size_t bytes);
+    ~gpu_memory();
+    std::uintptr_t address() const { return reinterpret_cast<std::uintptr_t>(memory_->data()); }
+    std::size_t bytes() const { return memory_->bytes(); }
+    /// Copies to so many bytes behind its begin, and from there to the host.
+    void write(std::size_t to, const void* from, std::size_t bytes);
+    void read(std::size_t from, void* to, std::size_t bytes) const;
+
+private:
+    int device_;
+    std::unique_ptr<cuda::device_memory> memory_;
+};
+
+/// A kernel of a program in machine code or PTX. It takes one structure, by value, and has a thread for each of so many
+/// elements, in blocks as large as its launch bounds. Throws `error` if the driver refuses the program.
+class gpu_kernel {
+public:
+    gpu_kernel(const std::string& image, const std::string& name, int device);
+    /// Launches it, and waits for its end.
+    void run(const std::string& argument, std::int64_t size) const;
+
+private:
+    const void* kernel_ = nullptr;
+    int device_, block_size_ = 1;
+};
+
 /// A program as machine code or PTX, and the devices it was loaded on; kept for the life of the process.
 class device_program {
 public:

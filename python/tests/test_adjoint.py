@@ -138,6 +138,17 @@ def test_events_without_an_action_change_no_gradient():
     np.testing.assert_allclose(found[1], both(driven, sets, **call)[0][1], rtol=1e-7)
 
 
+def test_a_network_with_sparse_factors_has_the_derivatives_of_the_same_steps():
+    z = my.states([f"z{i}" for i in range(7)])
+    flow = [a * z[i] - 50 * z[i + 1] * z[i + 1] for i in range(6)]
+    back = z[6] * z[3]
+    network = my.model({z[i]: (flow[i - 1] if i > 0 else back) - (flow[i] if i < 6 else back) for i in range(7)},
+                       name="network")
+    start = {one: 0.1 * (i + 1) for i, one in enumerate(z) if i != 4}
+    assert_equal(*both(network, np.array([[3.0, 0.2], [1.0, 0.9]]), of=[z[0], z[6], z[5]], by=[a, z[4]], start=start,
+                       time=(0, 2), samples=[0.1, 1.0, 2.0], method="rosenbrock_23", rtol=1e-5, atol=1e-6))
+
+
 def test_instances_that_fail_are_nan_alone_and_the_order_changes_no_bit():
     model = my.model({x: a * x * x - b * y, y: c * x - y}, name="bursting")
     function = my.batched(model, by=[a, b, c, x], of=[x, y], start={y: 0.1}, time=(0, 2), samples=[0.5, 2.0],

@@ -476,3 +476,58 @@ def test_ids_that_differ_in_underscores_are_not_mixed_up():
     run = my.solve(model, {"k__": [1, 5]}, time=(0, 2), interpreted=True)
     for name, values in (("k__", [1, 5]), ("k", [2, 2]), ("_k", [3, 3]), ("x", [312, 352]), ("next_jump", [6, 6])):
         np.testing.assert_allclose(run[name], values, rtol=1e-9, err_msg=name)
+
+
+def switched(given, *parts):
+    """dA/dt = E - k A, A = 1 at the start, with an input E."""
+    return my.read_sbml(sbml_models.document([
+        compartment("c"), species("A", concentration=1.0), parameter("k", 0.5), sbml_models.variable("E"), *parts,
+        always("E", given), reaction("loss", "A ->", "k * A * c"), reaction("gain", "-> A", "E * c")]))
+
+
+def of_steps(steps, t, k=0.5):
+    """A at times, for an input that is the sum of steps (height, time)."""
+    after = [np.maximum(t - at, 0) for _, at in steps]
+    return np.exp(-k * t) + sum(height / k * (1 - np.exp(-k * s)) for (height, _), s in zip(steps, after))
+
+
+@pytest.mark.parametrize("call", [{"interpreted": True}, {}, {"sensitivities": ["on", "off"]}], ids=str)
+def test_a_pulse_is_not_stepped_over(call):
+    model = switched("piecewise(u, (time > on) && (time <= off), 0)", parameter("u", 1000), parameter("on", 10),
+                     parameter("off", 10.001))
+    run = my.solve(model, time=(0, 20), samples=21, rtol=1e-9, atol=1e-11, **call)
+    t = np.linspace(0, 20, 21)
+    np.testing.assert_allclose(run["A"][0], of_steps([(1000, 10), (-1000, 10.001)], t), rtol=1e-7)
+    np.testing.assert_array_equal(run["E"][0], 0)  # at the samples, none of which is in the pulse
+    assert run.steps()[0] < 400
+    assert not [name for name in run.accessories if name.startswith("switch")]
+    if "sensitivities" in call:
+        ends = np.array([10, 10.001])
+        np.testing.assert_allclose(run.sensitivity["A"][0, -1], [-1000, 1000] * np.exp(-0.5 * (20 - ends)), rtol=1e-7)
+
+
+def test_switches_at_many_times_act_in_every_phase_and_backwards():
+    text = "0"
+    for i in range(20):
+        text = f"piecewise({i % 3 + 1}, (time >= {i}) && (10 * time < {10 * i + 1}), {text})"
+    model = switched(text)
+    steps = [(sign * (i % 3 + 1), i + late) for i in range(20) for sign, late in ((1, 0), (-1, 0.1))]
+    call = {"rtol": 1e-10, "atol": 1e-12, "interpreted": True}
+    expected = of_steps(steps, np.array([1.0, 2, 3, 20]))
+    run = my.solve(model, time=(0, 20), phases=3, phase_length=1, record=["A"], **call)  # which end at switches
+    np.testing.assert_allclose(run["A"][0], expected[:3], rtol=1e-8)
+    twice = my.solve(model, time=(0, 20), phases=2, record=["A"], **call)  # the second starts at 0 again
+    np.testing.assert_allclose(twice["A"][0], [expected[3], expected[3] + np.exp(-10) * (expected[3] - 1)],
+                               rtol=1e-8)
+    back = my.solve(model, time=(3, 1), start={"A": expected[2]}, **call)
+    np.testing.assert_allclose(back["A"], expected[0], rtol=1e-7)
+    single = my.solve(model, time=(0.1, 3), start={"A": of_steps(steps, 0.1)}, precision="float", rtol=1e-5, atol=1e-6)
+    np.testing.assert_allclose(single["A"], expected[2], rtol=1e-4)
+
+
+def test_switch_times_follow_from_parameters_of_each_instance():
+    model = switched("piecewise(2, 3 - 2 * time <= p / 4, 0) + piecewise(1, not(time > p), 0)", parameter("p", 1))
+    p = np.array([1.0, 2.0, 30.0, -1.0])
+    run = my.solve(model, {"p": p}, time=(0, 4), rtol=1e-9, atol=1e-11, interpreted=True)
+    expected = [of_steps([(2, max(1.5 - at / 8, 0)), (at > 0, 0), (-(at > 0), at)], 4.0) for at in p.tolist()]
+    np.testing.assert_allclose(run["A"], expected, rtol=1e-7)

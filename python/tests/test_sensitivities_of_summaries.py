@@ -125,3 +125,74 @@ def test_a_phase_that_a_stop_ends_has_the_derivative_of_its_time():
     np.testing.assert_allclose(run.sensitivity[my.time][0], [0, 1], atol=1e-12)
     value = 2 * np.exp(-0.75)
     np.testing.assert_allclose(run.sensitivity[x][0], [-1.5 * value, -0.5 * value], rtol=1e-8)
+
+
+@pytest.mark.parametrize("method", ["tsitouras_5", "rodas_5p"])
+def test_the_ends_of_the_time_domain_have_derivatives_through_an_event(method):
+    # x' = cos(t), which at c falls to r x + t / 10; v' = x.
+    c = my.parameter("c")
+    model = my.model({x: my.cos(my.time), v: x}, accessories={when: 0, area: my.integral(my.time * x)}, events=my.event(
+        x - c, direction="rising", do={x: r * x + my.time / 10, when: my.time}), name="domain")
+    at, call = np.array([0.3, 2.2]), {"start": {x: 0.5, v: 0.1}, "method": method, "rtol": 1e-10, "atol": 1e-10}
+    run = my.solve(model, {c: 1.0, r: 0.2}, time=tuple(at), sensitivities=[my.t_begin, c, my.t_end], **call)
+
+    def closed(begin, end, kind):
+        up = np.arcsin(0.5 + np.sin(begin))  # where x is 1
+        after = lambda t: 0.2 + up / 10 + np.sin(t) - np.sin(up)  # noqa: E731
+        if kind is x:
+            return after(end)
+        if kind is when:
+            return up
+        t, weight = np.polynomial.legendre.leggauss(30)
+        total = 0.1 if kind is v else 0.0
+        for low, high, f in ((begin, up, lambda t: 0.5 + np.sin(t) - np.sin(begin)), (up, end, after)):
+            s = (low + high + t * (high - low)) / 2
+            total += (high - low) / 2 * (weight @ (f(s) * (1 if kind is v else s)))
+        return total
+
+    for kind in (x, v, when, area):
+        np.testing.assert_allclose(run[kind][0], closed(*at, kind), rtol=1e-8)
+        expected = by_differences(lambda begin, end, kind=kind: closed(begin, end, kind), at)
+        found = [run.sensitivity[kind, my.t_begin][0], run.sensitivity[kind, "t_end"][0]]
+        np.testing.assert_allclose(found, expected, rtol=1e-7, atol=1e-9)
+    assert run.sensitivity.by == ["t_begin", "c", "t_end"]
+    np.testing.assert_array_equal(run.sensitivity[my.time], [[0, 0, 1]])
+    if method == "tsitouras_5":  # and against differences of the numerical solution
+        d = 2e-3
+        near = [-2 * d, -d, d, 2 * d]
+        for of, times in ((my.t_begin, (at[0] + near, at[1])), (my.t_end, (at[0], at[1] + near))):
+            f = my.solve(model, {c: 1.0, r: 0.2}, time=times, **{**call, "rtol": 1e-13, "atol": 1e-13})
+            for kind in (x, v):
+                far, back, ahead, further = f[kind]
+                expected = (8 * (ahead - back) - (further - far)) / 12 / d
+                np.testing.assert_allclose(run.sensitivity[kind, of][0], expected, rtol=1e-7)
+
+
+def test_initial_values_that_follow_from_the_begin_have_its_derivative():
+    pytest.importorskip("libsbml")
+    import sbml_models as sbml
+
+    model = my.read_sbml(sbml.document([
+        sbml.compartment("c"), sbml.species("A", concentration=1.0), sbml.parameter("k", 0.5),
+        sbml.initially("A", "k * (1 + time^2)"), sbml.reaction("loss", "A ->", "k * A * c")]))
+    run = my.solve(model, {"k": 0.5}, time=(0.5, 2), sensitivities=[my.t_begin, "k"], **tight)
+    decay = np.exp(-0.75)
+    np.testing.assert_allclose(run.sensitivity["A"][0], [0.5 * decay * (1 + 0.5 * 1.25), 1.25 * decay * (1 - 0.75)],
+                               rtol=1e-8)
+
+
+@pytest.mark.parametrize("by, message", [
+    (my.time, "is no component of a model"),
+    (my.step, "is no component of a model"),
+    ("t_beginn", "'t_beginn' is no component that sensitivities can be by: did you mean 't_begin'?"),
+    ([my.t_end, "t_end"], "'t_end' is there twice"),
+])
+def test_other_times_are_refused(by, message):
+    with pytest.raises(my.Error, match=message):
+        my.solve(my.model({x: -k * x}), {k: 1}, start={x: 1}, time=(0, 1), sensitivities=by)
+
+
+def test_a_component_with_the_name_of_an_end_is_refused():
+    begin = my.parameter("t_begin")
+    with pytest.raises(my.Error, match="the model has a component 't_begin'.*rename it"):
+        my.solve(my.model({x: -begin * x}), {begin: 1}, start={x: 1}, time=(0, 1), sensitivities=[my.t_begin])

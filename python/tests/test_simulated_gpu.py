@@ -450,6 +450,83 @@ assert np.allclose(on_axis().run(device="cuda")["x_sample"], domains(samples=3).
 """)
 
 
+TEAMS = """
+count = np.arange(n)
+units = my.units(n, threads_per_instance=threads)
+x, v = units.states("x v")
+k, w, strength = units.parameter("k"), units.shared("w"), my.parameter("strength")
+around = units.circulant_coupling("A", np.stack([np.roll([0, 0.2, *[0] * (n - 3), 0.1], i) for i in count]), 1)
+sets = {k: [np.linspace(1, 2, 7) + 0.1 * i for i in range(n)], w: np.linspace(-1, 1, n)}
+
+def compare(model, values=sets, precision="double", allowed=1e-3, **more):  # by teams, by one thread each, on the CPU
+    start = {x: np.linspace(-1, 1, n), v: np.linspace(0, 1, n)}
+    more = dict(start=start, time=(0, 2), rtol=1e-5, precision=precision, **more)
+    names = [*model.states, *model.parameters, *model.accessories, *model.integer_accessories]
+    team, here = (my.solve(model, values, device=device, **more) for device in ("cuda", "cpu"))
+    usual = my.Model.device_source
+    def of_one_thread(*asked):
+        text, struct = usual(*asked)
+        return text.replace(f"threads_per_instance = {threads}", "threads_per_instance = 1"), struct
+    my.Model.device_source = of_one_thread
+    alone = my.solve(model, values, device="cuda", **more)
+    my.Model.device_source = usual
+    assert (team.report.threads_per_instance, alone.report.threads_per_instance) == (threads, 1)
+    assert same(team, alone, names) and np.array_equal(team.status, alone.status)
+    assert np.array_equal(team.steps("evaluations"), alone.steps("evaluations"))
+    wrong = [name for name in names if not np.allclose(team[name], here[name], rtol=allowed, atol=allowed)]
+    assert not wrong, (wrong, [(team[name], here[name]) for name in wrong[:2]])
+    return team
+"""
+
+
+@pytest.mark.parametrize("precision", ["double", "float"])
+def test_teams_sum_the_matrices_of_units_as_one_thread_does(run, precision):
+    run("n, threads = 19, 8" + TEAMS + f"""
+full, row = np.random.default_rng(4).normal(size=(n, n)) / n, np.linspace(-0.1, 0.1, n)
+F = units.full_coupling("F", full)
+B = units.banded_coupling("B", np.where(np.abs(np.subtract.outer(count, count)) <= 2, full, 0), 2)
+C = units.circulant_coupling("C", np.stack([np.roll(row, i) for i in count]))
+force = w * (F @ np.sin(x)) + B @ v - C @ np.cos(x) + np.roll(F @ x, 1)
+compare(my.model({{x: v + around @ v, v: force - k * x}}), precision={precision!r})
+""")
+
+
+def test_teams_call_the_hooks_of_units_and_find_their_events_and_summaries_as_one_thread_does(run):
+    run("n, threads = 3, 2" + TEAMS + """
+top, when, work, last = (units.accessory(name) for name in ("top", "when", "work", "last"))
+turns, total, seen = units.integer_accessory("turns"), my.accessory("total"), my.integer_accessory("seen")
+def turned(i):
+    return {v[i]: 0.9 * v[i], v[(i + 1) % n]: v[(i + 1) % n] + 0.01 * x[i], turns[i]: turns[i] + 1, seen: seen + 1,
+            last[i]: my.time}
+model = my.model(
+    {x: v, v: strength * (around @ x) - k * x - 0.02 * last * v + w * my.cos(3 * my.time)},
+    accessories={top: my.phase_maximum(x * x), when: my.time_of_maximum(x * x), last: 0, turns: 0,
+                 work: my.integral(np.roll(x, 1) * v), seen: 0, total: None},
+    events=[*units.events(v, name="turn", direction="falling", do=turned),
+            *units.events(x - 0.1 - 0.1 * last, name="rise", direction="rising", tolerance=1e-6,
+                          do=lambda i: {k[i]: 1.01 * k[i]})],
+    stops=my.stop(0.3, every=0.4, do={v: v + 0.05, strength: strength * 0.9}),
+    initialise={v: v + 0.1}, after_step={last: 0.999 * last, my.end_phase: seen >= 4},
+    finalise={total: sum(x), v: 0.5 * v + x})
+team = compare(model, {**sets, strength: 0.4}, allowed=0.01)
+assert set(team["seen"] >= 4) == {True, False} and (team["strength"] < 0.4).all()
+assert sum((team[f"k_{i}"] > sets[k][i]).any() for i in range(n)) > 1
+""")
+
+
+def test_studies_generate_the_instances_of_units_that_teams_integrate(run):
+    run("n, threads = 19, 8" + TEAMS + """
+first = units.accessory("first")
+drawn = {x: my.instance * 0.1 - 0.5, v: my.uniform(-1, 1), k: my.normal(2, 0.1), strength: my.uniform()}
+model = my.model({x: v, v: strength * (around @ x) - k * x}, initialise={first: x}, generate=drawn)
+assert "coupled_units" in model.device_source("tsitouras_5", "double")[0]
+kept = [x[0], x[18], k[3], first[18], strength]
+team, here = (my.study(model, draws=50, time=(0, 1), rtol=1e-8, keep=kept).run(device=d) for d in ("cuda", "cpu"))
+assert all(np.allclose(team[name], here[name], rtol=1e-6, atol=1e-6) for name in team.names)
+assert len(set(team["k_3_end"])) == 50 and np.array_equal(team["first_18_end"], np.arange(50) * 0.1 - 0.5)
+""")
+
+
 ENDLESS = """
 import signal, threading, time
 end = np.ones(400)
@@ -613,3 +690,46 @@ taken, bytes_of_samples = memory() - before, size * samples * 8 * 3
 assert 0.5 * bytes_of_samples < taken < 1.5 * bytes_of_samples, (taken, bytes_of_samples)  # the simulated GPU's own
 assert np.isfinite(all["x"]).all() and np.array_equal(all["x"], on_host(all.device["x"]))
 """, MYRIAD_SIMULATED_MEGABYTES=4096)
+
+
+ADJOINT = """
+from myriad import adjoint
+x, y = my.states("x y")
+a, b, c = my.parameters("a b c")
+model = my.model({x: a * x - b * x * y, y: b * x * y - y + c * my.exp(-x * x)},
+                 events=[my.event(x - 1.5, direction="falling", do={y: 0.5 * y + c})],
+                 stops=[my.stop([0.7], do={x: x + 0.1 * a})])
+rows = np.random.default_rng(1).uniform(0.5, 1.5, (50, 4))
+usual = dict(by=[a, b, c, x], of=[y, x], start={y: 1.0}, time=(0, 3), rtol=1e-6, atol=1e-6, adjoint=True)
+
+def gradient(device, **more):
+    weights = lambda values: np.cos(values)
+    return my.batched(model, **{**usual, "device": device, **more}).vjp(rows, weights)
+
+def close(found, expected):
+    for one, other in zip(found, expected):
+        np.testing.assert_allclose(one, other, rtol=1e-11, atol=1e-11)
+"""
+
+
+@pytest.mark.parametrize("method", ["dormand_prince_5", "rodas_5p"])
+def test_an_adjoint_on_a_gpu_has_the_gradients_of_the_cpu(run, method):
+    run(MODEL + ADJOINT + f"""
+for samples in (None, [0.0, 0.5, 0.7, 2.9, 3.0]):
+    of = dict(samples=samples, method="{method}")
+    close(gradient("cuda", **of), gradient("cpu", **of))
+""")
+
+
+def test_an_adjoint_on_a_gpu_takes_instances_in_groups_that_have_room(run):
+    run(MODEL + ADJOINT + """
+expected = gradient("cpu")
+made = my.batched(model, **usual, device="cuda")
+assert made.adjoint._most_on_gpu == 1 << 30  # more than there is
+close(made.vjp(rows, np.cos), expected)
+assert made.adjoint._most_on_gpu < 1 << 20, made.adjoint._most_on_gpu
+""", MYRIAD_SIMULATED_MEGABYTES=4)
+    run(MODEL + ADJOINT + """
+said = message(lambda: gradient(["cuda", "cpu"]))
+assert "several devices" in said and "leave out adjoint=True" in said, said
+""")

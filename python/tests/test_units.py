@@ -144,6 +144,31 @@ def test_units_that_are_alike_are_written_as_one_unit_for_gpus():
         np.testing.assert_allclose(other[name], one[name], rtol=1e-11, atol=1e-11)
 
 
+@pytest.mark.parametrize("precision, allowed", [("double", 1e-11), ("float", 1e-4)])
+def test_matrices_of_units_are_the_couplings_of_cpp(precision, allowed):
+    """Of every form; one matrix for two sums is declared once."""
+    units = my.units(n)
+    x, y = units.states("x y")
+    F, B = units.full_coupling("F", full / n), units.banded_coupling("B", banded / n, 2)
+    C, D = units.circulant_coupling("C", ring, 1), units.circulant_coupling("D", all_round / n)
+    model = my.model({x: C @ x - x + F @ np.sin(y), y: B @ y + D @ np.sin(y) + F @ x - y})
+    text = unit_form(model).source("ring")
+    declared = " ".join(text.partition("couplings[] = {")[2].partition("}")[0].split())
+    assert declared == ("myriad::circulant_coupling(published_0, 1), myriad::full_coupling(published_1), "
+                        "myriad::same_coupling(published_0, 1), myriad::banded_coupling(published_2, 2), "
+                        "myriad::circulant_coupling(published_1)")
+    assert "for (" not in text and "p.shared" not in text
+    values = model.shared_values
+    assert (values["B[3,5]"], values["C[0,11]"], values["F[7,2]"]) == (banded[3, 5] / n, near[11], full[7, 2] / n)
+    as_units = my.CppModel("#include <myriad/coupled_units.hpp>\n" + text, "ring", model.states, [], model.shared)
+    more = dict(time=(0, 1), rtol=1e-6, precision=precision, device="cpu")
+    one = my.solve(model, start={x: x0, y: v0}, **more)
+    start = {s.value[1]: v for s, v in zip((*x, *y), (*x0, *v0))}
+    other = my.solve(as_units, {**values}, start=start, **more)
+    for name in model.states:
+        np.testing.assert_allclose(other[name], one[name], rtol=allowed, atol=allowed)
+
+
 def test_units_say_how_many_threads_of_a_gpu_integrate_an_instance():
     assert "threads_per_instance = 16;" in alike(threads_per_instance=16)[0].device_source("cash_karp", "double")[0]
     few, _ = alike(4)
@@ -152,16 +177,40 @@ def test_units_say_how_many_threads_of_a_gpu_integrate_an_instance():
     assert alone.device_source("cash_karp", "double") == alone.source()
 
 
+def test_hooks_events_and_summaries_of_units_are_those_of_one_unit_for_gpus():
+    units = my.units(20)
+    x, v = units.states("x v")
+    top, count, total = units.accessory("top"), units.integer_accessory("count"), my.accessory("total")
+    model = my.model(
+        {x: v, v: -x}, accessories={top: my.phase_maximum(x), count: 0, total: 0}, after_step={my.end_phase: x[2] > 9},
+        events=[*units.events(v, name="turn", do=lambda i: {count[i]: count[i] + 1, v[(i + 1) % 20]: -v[(i + 1) % 20]}),
+                *units.events(x, name="pass")],
+        stops=my.stop(1.0, do={v: 2 * v, total: x[0] + x[1]}), finalise={x: x + v, v: v - x},
+        generate={x: my.uniform()})
+    assert model.accessories[:2] == ["total", "top_0"]
+    assert [e.name for e in model.events[:3]] == ["turn_0", "pass_0", "turn_1"]
+    text = model.device_source("cash_karp", "double")[0]
+    for written in ("enum unit_event { turn, pass, n_unit_event };", "{observed_x, myriad::over_phase::maximum, top}",
+                    "if (lane.of(2).y[x] > 9) wanted = myriad::action::end_phase;", "if (event == turn) {",
+                    "lane.of(unit_1).y[v] = -lane.of(unit_1).y[v];", "lane.unit_integer_accessory[count] = myriad::",
+                    "lane.accessory[total] = lane.of(0).y[x] + lane.of(1).y[x];", "instance.y[38] = uniform"):
+        assert written in text, written
+    assert text.count("lane.y[x] += lane.y[v];") == 1 and "next_v" in text  # from what was there before
+
+
 @pytest.mark.parametrize("more", [
-    lambda x: dict(events=[my.event(x[0])]), lambda x: dict(finalise={x[0]: 1}), lambda x: dict(stops=my.stop(1.0)),
-    lambda x: dict(accessories={my.accessory("top"): my.phase_maximum(x[0])}), lambda x: dict(generate={x[0]: 1})])
-def test_units_with_more_than_equations_are_written_out_for_gpus(more):
+    lambda x: dict(events=[my.event(x[0])]), lambda x: dict(finalise={x[0]: 1}),
+    lambda x: dict(finalise={x: np.roll(x, 1)}),
+    lambda x: dict(accessories={my.accessory("top"): my.phase_maximum(x[0])}),
+    lambda x: dict(initialise={my.accessory("a"): x[0], x: my.accessory("a")}),
+    lambda x: dict(triggers=my.trigger(x[0] > 1, do={x[0]: 0}))])
+def test_units_whose_hooks_are_not_alike_are_written_out_for_gpus(more):
     x = my.units(20).state("x")
     model = my.model({x: -x}, **more(x))
     assert unit_form(model) is None and model.device_source("cash_karp", "double") == model.source()
 
 
-@pytest.mark.parametrize("name", ["publish", "sum_3", "unit", "threads_per_instance", "x"])
+@pytest.mark.parametrize("name", ["publish", "published_3", "unit", "threads_per_instance", "x"])
 def test_units_with_names_that_a_unit_has_itself_are_written_out_for_gpus(name):
     x, k = my.units(20).state("x"), my.parameter(name)
     assert unit_form(my.model({x: -k * x})) is None

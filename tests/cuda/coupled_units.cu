@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The kernels of coupled units: a small system takes what the same system written as a whole takes; the parts of a
-// team's threads are in registers, those of 30 states and those of 256, whose Jacobian is full; a team has hooks and
-// events.
+// team's threads are in registers, those of 30 states and those of 256, whose Jacobian is full; a team has hooks,
+// events, extrema and integrals, and accessories and parameters that hooks write.
 //
 // limit: integrate_ensemble<coupled_units<oscillator, 4>, cash_karp> stack 40 spill 0 registers_within 1.05 of integrate_ensemble<whole_ring<4>, cash_karp>
 // limit: integrate_ensemble<part_of_units<coupled_units<of_team<place, 8>, 30>, 8>, tsitouras_5> stack 0 spill 0 registers 128
@@ -22,6 +22,8 @@ using small = units::ring<4>;
 using small_as_a_whole = units::whole_ring<4>;
 using part_of_30 = myriad::detail::model_of_thread<teams::places<8>, myriad::tsitouras_5, double>;
 using part_with_hooks = myriad::detail::model_of_thread<teams::hoppers<16>, myriad::cash_karp, double>;
+using part_that_observes = myriad::detail::model_of_thread<teams::watched_ring<8>, myriad::cash_karp, double>;
+using part_that_adapts = myriad::detail::model_of_thread<teams::adapting_cells<8>, myriad::cash_karp, double>;
 using part_of_256 = myriad::detail::model_of_thread<bubble_cluster, myriad::cash_karp, double>;
 // One thread has a large trial step in shared memory; a team has that memory for itself, however large the step.
 using part_of_512 =
@@ -32,4 +34,6 @@ INSTANTIATE(small, cash_karp, constant_bank)
 INSTANTIATE(small_as_a_whole, cash_karp, constant_bank)
 INSTANTIATE(part_of_30, tsitouras_5, constant_bank)
 INSTANTIATE(part_with_hooks, cash_karp, constant_bank)
+INSTANTIATE(part_that_observes, cash_karp, constant_bank)
+INSTANTIATE(part_that_adapts, cash_karp, constant_bank)
 INSTANTIATE(part_of_256, cash_karp, cache)

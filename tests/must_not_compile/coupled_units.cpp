@@ -16,6 +16,8 @@
 // expect: the band of a coupling does not fit
 // case: ring_that_meets_itself
 // expect: the band of a coupling does not fit
+// case: matrix_of_a_later_coupling
+// expect: a coupling has the matrix of one that is not earlier
 // case: parameter_of_the_system_of_a_unit
 // expect: this enumerator is of another kind of component
 // case: states_of_the_system
@@ -52,6 +54,9 @@ struct cell {
     static constexpr myriad::coupling couplings[] = {myriad::banded_coupling(flow, 4)};
 #elif defined CASE_ring_that_meets_itself
     static constexpr myriad::coupling couplings[] = {myriad::circulant_coupling(flow, 2)};
+#elif defined CASE_matrix_of_a_later_coupling
+    static constexpr myriad::coupling couplings[] = {myriad::same_coupling(flow, 1),
+                                                     myriad::circulant_coupling(flow, 1)};
 #else
     static constexpr myriad::coupling couplings[] = {myriad::circulant_coupling(flow, 1)};
 #endif

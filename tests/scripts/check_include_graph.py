@@ -23,7 +23,6 @@ CUDA_CODE = {
     "myriad/kernel/core/macros.hpp",            # execution spaces, unrolling, barriers
     "myriad/kernel/core/team.hpp",              # what the threads of a warp do together
     "myriad/kernel/core/vec.hpp",               # indices out of range, which nvcc's host compiler refuses
-    "myriad/kernel/model/part_of_units.hpp",    # where a team's part of the shared memory begins
     "myriad/kernel/model/unit_views.hpp",       # numbers of units, likewise
     "myriad/kernel/scalar/math.hpp",            # functions of one number
     "myriad/kernel/scalar/trigonometry.hpp",

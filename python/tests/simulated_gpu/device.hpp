@@ -10,6 +10,7 @@
 #include <utility>
 
 #define __CUDACC_RTC__ 1
+#define MYRIAD_SIMULATED_TEAM 1
 #define __global__
 #define __device__
 #define __forceinline__ inline __attribute__((always_inline))
@@ -82,6 +83,34 @@ inline unsigned long long __shfl_down_sync(unsigned, unsigned long long value, i
     simulated::wait_for_block();
     return result;
 }
+
+namespace myriad::simulated_team {
+inline int number_of_thread() { return static_cast<int>(simulated::now.thread.x); }
+inline void synchronise(int threads) {
+    static struct {
+        int waiting;
+        unsigned times;
+    } barriers[1024];
+    auto& barrier = barriers[number_of_thread() / threads * threads];
+    const unsigned before = barrier.times;
+    if (++barrier.waiting == threads) {
+        barrier.waiting = 0;
+        ++barrier.times;
+    }
+    while (barrier.times == before) simulated::now.yield();
+}
+inline std::uint64_t exchange(std::uint64_t value, int from, int threads) {
+    simulated::now.exchanged[number_of_thread()] = value;
+    synchronise(threads);
+    const std::uint64_t found = simulated::now.exchanged[from];
+    synchronise(threads);
+    return found;
+}
+inline void* memory() {
+    alignas(16) static double of_block[32'768];
+    return of_block;
+}
+}  // namespace myriad::simulated_team
 
 // One copy of what a block shares, as blocks run one after the other.
 #define __shared__ static

@@ -25,13 +25,6 @@ struct large_unit {
         return {};
     }
 };
-struct place_that_writes_parameters : teams::of_team<teams::place, 8> {
-    static constexpr bool writes_parameters = true;
-};
-struct place_that_reads_accessories : teams::of_team<teams::place, 8> {
-    enum unit_accessory { force, n_unit_accessory };
-};
-
 }  // namespace
 
 TEST_CASE("a team has about 32 bytes of the state in each thread, and is a warp at most") {
@@ -67,10 +60,7 @@ TEST_CASE("units say how many threads integrate them, and what teams do not have
     CHECK(threads_per_instance<ring, teams::averaged, double>() == 4);
     CHECK(threads_per_instance<ring, myriad::dense<myriad::tsitouras_5>, double>() == 4);
     CHECK(threads_per_instance<teams::hoppers<4>, myriad::tsitouras_5, double>() == 4);
-    const auto threads_of = [](auto unit) {
-        return threads_per_instance<myriad::coupled_units<decltype(unit), 30>, myriad::tsitouras_5, double>();
-    };
-    CHECK(threads_of(place_that_writes_parameters{}) == 1);
-    CHECK(threads_of(place_that_reads_accessories{}) == 1);
-    CHECK(threads_of(teams::of_team<units::ball, 8>{}) == 1);  // which observes
+    CHECK(threads_per_instance<teams::watched_ring<4>, myriad::tsitouras_5, double>() == 4);
+    CHECK(threads_per_instance<teams::adapting_cells<4>, myriad::tsitouras_5, double>() == 4);
+    CHECK(threads_per_instance<myriad::with_tangents<ring, 1>, myriad::tsitouras_5, double>() == 1);
 }

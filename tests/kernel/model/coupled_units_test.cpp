@@ -135,15 +135,16 @@ void check_sums() {
         lag[i] = e.state(W::state_of(i, phase_oscillator::lag))[0];
     }
     const Eigen::VectorXd sine = phase.array().sin(), cosine = phase.array().cos();
-    const ArrayXd full = m.full * sine, banded = m.banded * cosine, ring = m.ring * sine, all = m.all_round * cosine;
+    const ArrayXd full = m.full * sine, banded = m.banded * cosine, ring = m.ring * sine, all = m.all_round * cosine,
+                  same = m.full * cosine;
     for (int i = 0; i < n; ++i) {
         CAPTURE(i);
         // n products of numbers up to one
         const double allowed = 8 * n * std::numeric_limits<double>::epsilon();
         CHECK(std::abs(slopes[static_cast<std::size_t>(2 * i)] -
                        (1 + 0.05 * i + cosine[i] * full[i] - sine[i] * banded[i])) <= allowed);
-        CHECK(std::abs(slopes[static_cast<std::size_t>(2 * i + 1)] - (phase[i] - lag[i] + ring[i] + all[i])) <=
-              allowed);
+        CHECK(std::abs(slopes[static_cast<std::size_t>(2 * i + 1)] -
+                       (phase[i] - lag[i] + ring[i] + all[i] + same[i])) <= allowed);
     }
 }
 
@@ -199,6 +200,17 @@ TEST_CASE("coupled units have tangents") {
 TEST_CASE("couplings sum what units publish, by matrices of every shape") {
     check_sums<7>();
     check_sums<19>();
+}
+
+TEST_CASE("a coupling with the matrix of another has no entries of its own") {
+    using W = units::phases<7>;
+    static_assert(W::n_shared == W::first_coupling + 7 * 7 + 7 * 5 + 3 + 7);
+    phase_matrices<7> m;
+    auto e = phases_with<7>(m);
+    const auto before = slopes_of(e);
+    myriad::set_coupling(e, phase_oscillator::full_cosine, Eigen::MatrixXd(2 * m.full));
+    CHECK(e.shared(W::first_coupling) == 2 * m.full(0, 0));
+    CHECK(slopes_of(e) != before);
 }
 
 TEST_CASE("couplings are the same in all instances of an ensemble") {
@@ -305,7 +317,7 @@ TEST_CASE("matrices that do not fit a coupling are refused") {
     broken = m.full;
     broken(2, 2) = std::nan("");
     CHECK(text(0, broken) == "entry (2, 2) of the matrix of coupling 0 is nan: give finite numbers");
-    CHECK(text(4, m.full).starts_with("coupling 4 does not exist"));
+    CHECK(text(5, m.full).starts_with("coupling 5 does not exist"));
 }
 
 TEST_CASE("the matrix of a coupling that was never set is missed") {

@@ -18,6 +18,8 @@ struct decay {
         return {p.shared[B] - p[k] * y[x], myriad::cos(p[k] * t) * y[x]};
     }
 };
+using decay_by_domain =
+    myriad::with_sensitivities<decay, myriad::time_domain::t_end, decay::k, myriad::time_domain::t_begin>;
 using decay_by_all = myriad::with_sensitivities<decay, decay::k, decay::x, decay::B, decay::unused>;
 using uncontrolled_decay = myriad::uncontrolled_sensitivities<decay, decay::k, decay::x, decay::B, decay::unused>;
 
@@ -120,5 +122,43 @@ struct inflection {
     }
 };
 using inflection_by_c = myriad::with_sensitivities<inflection, inflection::c>;
+
+/// x' = a t, which at `top` falls back to x / 5 + t / 10; it notes when, the time domain that its hooks see, and the
+/// integral of t x. With `last` falls the phase ends.
+struct saw {
+    enum state { x, n_state };
+    enum parameter { a, top, n_parameter };
+    enum shared_integer { last, n_shared_integer };
+    enum accessory { noted, begin, length, area, n_accessory };
+    enum event { there, n_event };
+    enum observed { moment, n_observed };
+    static constexpr myriad::summary summaries[] = {{moment, myriad::over_phase::integral, area}};
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto t, const myriad::vec<R, n_state>&, const auto& p) {
+        return myriad::vec<R, n_state>{R(p[a] * t)};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto, const myriad::vec<R, n_state>& y, const auto& p) {
+        return myriad::vec<R, n_event>{y[x] - p[top]};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_observed> observe(auto t, const myriad::vec<R, n_state>& y, const auto&) {
+        return myriad::vec<R, n_observed>{R(t * y[x])};
+    }
+    MYRIAD_FUNCTION static void initialise(auto& lane) {
+        lane.accessory[begin] = lane.t_begin * lane.t;
+        lane.y[x] = lane.y[x] + lane.t / 8;
+    }
+    MYRIAD_FUNCTION static myriad::action after_event(int, auto& lane) {
+        lane.accessory[noted] = lane.t * lane.t_end;
+        lane.y[x] = lane.y[x] / 5 + lane.t / 10;
+        return lane.event_count[there] == lane.shared_integer[last] ? myriad::action::end_phase
+                                                                    : myriad::action::proceed;
+    }
+    MYRIAD_FUNCTION static void finalise(auto& lane) { lane.accessory[length] = lane.t_end - lane.t_begin; }
+};
+using saw_by_domain =
+    myriad::with_sensitivities<saw, saw::a, saw::top, saw::x, myriad::time_domain::t_begin, myriad::time_domain::t_end>;
 
 }  // namespace sensitivities

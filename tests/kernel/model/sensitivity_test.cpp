@@ -293,6 +293,151 @@ TEST_CASE("sensitivities pass stop times that are parameters, and rates that hoo
     }
 }
 
+TEST_CASE("sensitivities by the ends of the time domain are those of a closed form, forwards and backwards") {
+    using W = decay_by_domain;  // by t_end, k, t_begin
+    myriad::ensemble<W> e(2);
+    e.parameter(decay::k) = 0.7;
+    e.parameter(decay::unused) = 7;
+    e.shared(decay::B) = 0.4;
+    e.shared(decay::other) = 3;
+    e.state(decay::x) = 2;
+    e.state(decay::w) = 0;
+    myriad::initial_sensitivities(e);
+    e.t_begin() << 0.5, 3;
+    e.t_end() << 3, 0.5;
+    myriad::options o = with_tolerance(1e-10);
+    std::vector<int> all;
+    for (int c = 0; c < W::n_state; ++c) all.push_back(c);
+    o.samples = {.states = all, .capacity = 2, .evenly = 2};
+    const auto report = myriad::solve<myriad::dense<myriad::tsitouras_5>>(tests::test_device(), e, o);
+    REQUIRE(report.count(myriad::status::success) == e.size());
+    for (Index i = 0; i < e.size(); ++i) {
+        const long double begin = static_cast<long double>(e.t_begin()[i]),
+                          end = static_cast<long double>(e.t_end()[i]);
+        const auto x = [](const numbers& p) {  // of the time, k and the begin
+            return 0.4L / p[1] + (2 - 0.4L / p[1]) * std::exp(-p[1] * (p[0] - p[2]));
+        };
+        const auto w = [&](const numbers& p) {  // by Gauss' rule in each of 40 parts
+            long double sum = 0;
+            const long double part = (p[0] - p[2]) / 40, off = std::sqrt(0.6L) / 2;
+            for (int j = 0; j < 40; ++j)
+                for (const long double node : {-off, 0.0L, off}) {
+                    const long double t = p[2] + part * (static_cast<long double>(j) + 0.5L + node);
+                    sum += part * (node == 0 ? 4.0L / 9 : 5.0L / 18) * std::cos(p[1] * t) * x({t, p[1], p[2]});
+                }
+            return sum;
+        };
+        for (int d = 0; d < 3; ++d) {
+            CAPTURE(i, d);
+            const auto of = static_cast<std::size_t>(d);
+            CHECK_THAT(e.state(W::sensitivity(decay::x, d))[i], near(derivative(x, {end, 0.7L, begin}, of)));
+            CHECK_THAT(e.state(W::sensitivity(decay::w, d))[i], near(derivative(w, {end, 0.7L, begin}, of)));
+            CHECK(e.accessory(W::time_sensitivity(d))[i] == (d == 0 ? 1 : 0));
+            for (const int sample : {0, 1}) {  // which stay at their times
+                const long double t = sample == 0 ? begin : end;
+                CHECK_THAT(e.samples().state(W::sensitivity(decay::x, d))(i, sample),
+                           near(d == 0 ? 0 : derivative(x, {t, 0.7L, begin}, of)));
+            }
+        }
+    }
+}
+
+namespace {
+
+/// What `saw` gives, of a, top, x, t_begin and t_end.
+struct saw_result {
+    long double x, t, noted, begin, length, area;
+};
+/// One phase from t and x, of which the hooks see the given begin and end; it ends at fall `last`.
+saw_result saw_phase(const numbers& p, long double t, long double x, long double begin, long double end, int last,
+                     long double noted = 0) {
+    saw_result s{x + t / 8, t, noted, begin * t, end - begin, 0};
+    for (int falls = 0;;) {
+        const long double a = p[0], zero = s.x - a * s.t * s.t / 2, hit = std::sqrt(2 * (p[1] - zero) / a);
+        const long double to = std::min(hit, end), square = (to * to - s.t * s.t) / 2;
+        s.area += zero * square + a * (to * to * to * to - s.t * s.t * s.t * s.t) / 8;
+        s.x = zero + a * to * to / 2;
+        s.t = to;
+        if (to == end) return s;
+        s.noted = to * end;
+        s.x = s.x / 5 + to / 10;
+        if (++falls == last) return s;
+    }
+}
+
+}  // namespace
+
+TEST_CASE("sensitivities by the ends of the time domain pass events, hooks, summaries and phases") {
+    using W = saw_by_domain;
+    const numbers at = {1.1L, 2.1L, 0.4L, 0.5L, 4.3L};
+    struct {
+        const char* name;
+        int phases, last;
+        bool carry_on;
+        double length;
+        std::function<saw_result(const numbers&)> expected;
+    } const cases[] = {
+        {"one phase", 1, 0, false, 0, [](const numbers& p) { return saw_phase(p, p[3], p[2], p[3], p[4], 0); }},
+        {"two from t_begin", 2, 0, false, 0,
+         [](const numbers& p) {
+             const auto first = saw_phase(p, p[3], p[2], p[3], p[4], 0);
+             return saw_phase(p, p[3], first.x - 1, p[3], p[4], 0);
+         }},
+        {"carried on from an event", 2, 2, true, 0,
+         [](const numbers& p) {
+             const auto first = saw_phase(p, p[3], p[2], p[3], p[4], 2);
+             return saw_phase(p, first.t, first.x, p[3], p[4], 0, first.noted);
+         }},
+        {"ended by an event", 1, 2, true, 0, [](const numbers& p) { return saw_phase(p, p[3], p[2], p[3], p[4], 2); }},
+        {"an end that is counted from t_begin", 2, 0, true, 1.4,
+         [](const numbers& p) {
+             const auto first = saw_phase(p, p[3], p[2], p[3], p[3] + 1.4L, 0);
+             return saw_phase(p, first.t, first.x, p[3] + 1.4L, p[3] + 2.8L, 0, first.noted);
+         }},
+        {"the last of such phases", 3, 0, true, 1.4, [](const numbers& p) {
+             const auto first = saw_phase(p, p[3], p[2], p[3], p[3] + 1.4L, 0);
+             const auto second = saw_phase(p, first.t, first.x, p[3] + 1.4L, p[3] + 2.8L, 0, first.noted);
+             return saw_phase(p, second.t, second.x, p[3] + 2.8L, p[4], 0, second.noted);
+         }}};
+    for (const auto& c : cases) {
+        CAPTURE(c.name);
+        myriad::ensemble<W> e(3);
+        e.parameter(saw::a) = static_cast<double>(at[0]);
+        e.parameter(saw::top) = static_cast<double>(at[1]);
+        e.shared_integer(saw::last) = c.last;
+        e.state(saw::x) = static_cast<double>(at[2]);
+        myriad::initial_sensitivities(e);
+        e.time_domain(static_cast<double>(at[3]), static_cast<double>(at[4]));
+        myriad::options o = with_tolerance(1e-10);
+        o.events = {{.direction = myriad::direction::rising}};
+        o.phase_time = c.carry_on ? myriad::phase_time::carry_on : myriad::phase_time::restart;
+        o.phase_length = c.length;
+        o.phases = c.length > 0 ? c.phases : 1;
+        while (e.phases_done()[0] < c.phases) {
+            myriad::solve<myriad::tsitouras_5>(tests::test_device(), e, o);
+            if (e.phases_done()[0] == c.phases) break;
+            e.shared_integer(saw::last) = 0;
+            if (!c.carry_on) e.state(saw::x) -= 1;
+        }
+        const saw_result expected = c.expected(at);
+        CHECK_THAT(e.state(saw::x)[1], near(static_cast<double>(expected.x)));
+        CHECK_THAT(e.accessory(saw::area)[1], near(static_cast<double>(expected.area)));
+        for (int d = 0; d < 5; ++d) {
+            CAPTURE(d);
+            const auto by = [&](long double saw_result::*part) {
+                return near(
+                    derivative([&](const numbers& p) { return c.expected(p).*part; }, at, static_cast<std::size_t>(d)));
+            };
+            CHECK_THAT(e.state(W::sensitivity(saw::x, d))[1], by(&saw_result::x));
+            CHECK_THAT(e.accessory(W::time_sensitivity(d))[1], by(&saw_result::t));
+            CHECK_THAT(e.accessory(W::accessory_sensitivity(saw::noted, d))[1], by(&saw_result::noted));
+            CHECK_THAT(e.accessory(W::accessory_sensitivity(saw::begin, d))[1], by(&saw_result::begin));
+            CHECK_THAT(e.accessory(W::accessory_sensitivity(saw::length, d))[1], by(&saw_result::length));
+            CHECK_THAT(e.accessory(W::accessory_sensitivity(saw::area, d))[1], by(&saw_result::area));
+        }
+    }
+}
+
 TEST_CASE("a surface that is passed with no slope has no sensitivity of its time, and no number stands for it") {
     using W = inflection_by_c;
     myriad::ensemble<W> e(2);

@@ -46,6 +46,7 @@ void compare(const myriad::ensemble<Alone>& alone, const myriad::ensemble<Togeth
              const std::vector<int>& sampled = {}) {
     for (std::int64_t i = 0; i < alone.size(); ++i) CHECK(alone.status(i) == together.status(i));
     for (int c = 0; c < Alone::n_state; ++c) CHECK((alone.state(c) == together.state(c)).all());
+    for (int c = 0; c < Alone::n_parameter; ++c) CHECK((alone.parameter(c) == together.parameter(c)).all());
     for (int c = 0; c < Alone::n_accessory; ++c) CHECK((alone.accessory(c) == together.accessory(c)).all());
     for (int c = 0; c < Alone::n_integer_accessory; ++c)
         CHECK((alone.integer_accessory(c) == together.integer_accessory(c)).all());
@@ -92,11 +93,14 @@ myriad::options tolerances(int n) {
     return options;
 }
 
+using teams::adapting_cells;
 using teams::drifters;
 using teams::hoppers;
+using teams::metered_line;
 using teams::phases;
 using teams::places;
 using teams::ring;
+using teams::watched_ring;
 
 }  // namespace
 
@@ -157,6 +161,33 @@ TEST_CASE("a team of threads locates events and calls hooks as one thread does")
 TEST_CASE("a team of threads calls hooks that move the end of the phase as one thread does") {
     compare<myriad::dormand_prince_5, drifters<1>, drifters<8>>(tolerances(21));
     compare<myriad::runge_kutta_4, drifters<1>, drifters<2>>({.step = 0.01});
+}
+
+TEST_CASE("a team of threads finds extrema and integrals along the solution as one thread does") {
+    myriad::options options = tolerances(22);
+    options.phases = 2;
+    options.phase_length = 0.7;
+    options.phase_time = myriad::phase_time::carry_on;
+    compare<myriad::cash_karp, watched_ring<1>, watched_ring<4>>(options);
+    compare<myriad::dormand_prince_8, watched_ring<1>, watched_ring<8>>(options);
+    compare<myriad::runge_kutta_4, metered_line<1>, metered_line<8>>({.step = 0.01});
+    options = tolerances(18);
+    options.samples = {.capacity = 40, .evenly = 17};
+    compare<teams::sampled, metered_line<1>, metered_line<16>>(options, {0, 17});
+}
+
+TEST_CASE("a team of threads sees accessories and parameters that hooks and summaries write as one thread does") {
+    myriad::options options = tolerances(17);
+    options.phases = 2;
+    compare<myriad::cash_karp, adapting_cells<1>, adapting_cells<4>>(options);
+    compare<myriad::dormand_prince_5, adapting_cells<1>, adapting_cells<16>>(options);
+    const auto start = ensemble_of<adapting_cells<4>>();
+    options.phases = 1;
+    auto e = ensemble_of<adapting_cells<4>>();
+    integrate<myriad::cash_karp>(e, options);
+    CHECK(e.integer_accessory(1).minCoeff() >= 1);  // all that hooks do is done
+    CHECK((e.parameter(2) < start.parameter(2)).all());
+    CHECK(e.integer_accessory(adapting_cells<4>::unit_type::mode).minCoeff() >= 1);
 }
 
 TEST_CASE("a state that overflows in one unit ends its instance alone, in a team as in one thread") {

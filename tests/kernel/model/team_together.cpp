@@ -68,18 +68,18 @@ void run_team(int threads, void (*work)()) {
 namespace myriad::simulated_team {
 
 int number_of_thread() { return now.running; }
-void synchronise() {
+void synchronise(int) {
     if (now.at_end > 0) {
         std::fprintf(stderr, "a thread waits for others of its team, which have ended\n");
         std::abort();
     }
     go_on_with(next());
 }
-std::uint64_t exchange(std::uint64_t value, int from) {
+std::uint64_t exchange(std::uint64_t value, int from, int threads) {
     now.exchanged[now.running] = value;
-    synchronise();
+    synchronise(threads);
     const std::uint64_t found = now.exchanged[from];
-    synchronise();
+    synchronise(threads);
     return found;
 }
 void* memory() { return now.memory; }
@@ -138,3 +138,9 @@ INTEGRATE_IN_TEAMS(teams::hoppers, myriad::cash_karp, 16)
 INTEGRATE_IN_TEAMS(teams::hoppers, teams::sampled_8, 8)
 INTEGRATE_IN_TEAMS(teams::drifters, myriad::dormand_prince_5, 8)
 INTEGRATE_IN_TEAMS(teams::drifters, myriad::runge_kutta_4, 2)
+INTEGRATE_IN_TEAMS(teams::watched_ring, myriad::cash_karp, 4)
+INTEGRATE_IN_TEAMS(teams::watched_ring, myriad::dormand_prince_8, 8)
+INTEGRATE_IN_TEAMS(teams::metered_line, myriad::runge_kutta_4, 8)
+INTEGRATE_IN_TEAMS(teams::metered_line, teams::sampled, 16)
+INTEGRATE_IN_TEAMS(teams::adapting_cells, myriad::cash_karp, 4)
+INTEGRATE_IN_TEAMS(teams::adapting_cells, myriad::dormand_prince_5, 16)

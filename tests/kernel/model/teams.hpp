@@ -104,6 +104,113 @@ struct drifter {
     }
 };
 
+/// Pendulums between neighbours, with extrema and integrals of what each has, and of a difference between neighbours.
+struct watched {
+    static constexpr bool accessories_are_outputs = true;
+    enum unit_state { angle, speed, n_unit_state };
+    enum parameter { spring, n_parameter };
+    enum unit_observed { energy, stretch, n_unit_observed };
+    enum accessory { phases_seen, n_accessory };
+    enum unit_accessory { most, when_most, work, widest, narrowest, when_narrowest, n_unit_accessory };
+    static constexpr myriad::summary summaries[] = {{energy, myriad::over_phase::maximum, most},
+                                                    {energy, myriad::over_phase::time_of_maximum, when_most},
+                                                    {energy, myriad::over_phase::integral, work},
+                                                    {stretch, myriad::over_phase::maximum, widest},
+                                                    {stretch, myriad::over_phase::minimum, narrowest},
+                                                    {stretch, myriad::over_phase::time_of_minimum, when_narrowest}};
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_unit_state> rhs(int unit, auto t, const auto& y, const auto& p) {
+        const int next = (unit + 1) % y.units, before = (unit + y.units - 1) % y.units;
+        return {y[speed], p[spring] * (y.of(next)[angle] + y.of(before)[angle] - R(2) * y[angle]) -
+                              R(4) * myriad::sin(R(2) * y[angle]) + myriad::cos(R(3) * t)};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_unit_observed> observe(int unit, auto, const auto& y, const auto& p) {
+        return {R(0.5) * y[speed] * y[speed], p[spring] * (y.of((unit + 1) % y.units)[angle] - y[angle])};
+    }
+    MYRIAD_FUNCTION static void finalise(int unit, auto& lane) {
+        if (unit == 0) lane.accessory[phases_seen] = lane.phase + 1 + lane.unit_accessory[widest];
+    }
+};
+/// The same without extrema, whose steps need no slopes of what is observed.
+struct metered {
+    static constexpr bool accessories_are_outputs = true;
+    enum unit_state { charge, n_unit_state };
+    enum unit_parameter { rate, n_unit_parameter };
+    enum unit_observed { flow, n_unit_observed };
+    enum unit_accessory { passed, n_unit_accessory };
+    static constexpr myriad::summary summaries[] = {{flow, myriad::over_phase::integral, passed}};
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_unit_state> rhs(int unit, auto t, const auto& y, const auto& p) {
+        return myriad::vec<R, n_unit_state>{p.unit_parameter[rate] * (y.of((unit + 1) % y.units)[charge] - y[charge]) +
+                                            myriad::sin(R(2) * t)};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_unit_observed> observe(int, auto, const auto& y, const auto& p) {
+        return myriad::vec<R, n_unit_observed>{p.unit_parameter[rate] * y[charge] * y[charge]};
+    }
+};
+/// Cells that fire at thresholds of their own: right-hand side and events read accessories, among them the largest
+/// charge so far, and the hooks write them and parameters.
+struct adapting {
+    static constexpr bool writes_parameters = true;
+    enum unit_state { charge, n_unit_state };
+    enum parameter { gain, n_parameter };
+    enum unit_parameter { drive, n_unit_parameter };
+    enum accessory { inhibition, n_accessory };
+    enum unit_accessory { threshold, largest, n_unit_accessory };
+    enum integer_accessory { mode, n_integer_accessory };
+    enum unit_integer_accessory { spikes, n_unit_integer_accessory };
+    enum unit_event { fires, n_unit_event };
+    enum unit_observed { height, n_unit_observed };
+    enum stop { switched, n_stop };
+    static constexpr myriad::summary summaries[] = {{height, myriad::over_phase::maximum, largest}};
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_unit_state> rhs(int unit, auto t, const auto& y, const auto& p) {
+        const R pull = p[gain] * (y.of((unit + 1) % y.units)[charge] - y[charge]);
+        return myriad::vec<R, n_unit_state>{p.unit_parameter[drive] + R(0.1) * pull - p.accessory[inhibition] -
+                                            R(0.05) * p.unit_accessory[largest] +
+                                            myriad::select(p.integer_accessory[mode] > 0, myriad::cos(t * R(5)), R(0))};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_unit_event> events(int unit, auto, const auto& y, const auto& p) {
+        return myriad::vec<R, n_unit_event>{y[charge] - p.unit_accessory[threshold] -
+                                            R(0.01) * p.of((unit + 2) % y.units).unit_parameter[drive]};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_unit_observed> observe(int, auto, const auto& y, const auto& p) {
+        return myriad::vec<R, n_unit_observed>{y[charge] * (R(1) + R(0.01) * p.accessory[inhibition])};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static R stop_time(int, int number, const auto& p) {
+        return R(0.2) * R(number + 1) + R(0.001) * p[gain];
+    }
+    MYRIAD_FUNCTION static void initialise(int unit, auto& lane) {
+        if (unit == 0) {
+            lane.accessory[inhibition] = 0.1;
+            lane.integer_accessory[mode] = 0;
+        }
+        lane.unit_accessory[threshold] = 2.2 + 0.01 * unit;
+        lane.unit_integer_accessory[spikes] = 0;
+    }
+    MYRIAD_FUNCTION static void after_step(int unit, auto& lane) {
+        if (unit == 3 && lane.y[charge] > 2) lane.accessory[inhibition] = 0.125 * static_cast<int>(8 * lane.t);
+    }
+    MYRIAD_FUNCTION static void after_event(int unit, int, auto& lane) {
+        lane.y[charge] *= 0.5;
+        lane.unit_accessory[threshold] += 0.05;
+        lane.unit_integer_accessory[spikes] += 1;
+        lane.of((unit + 1) % lane.y.units).unit_parameter[drive] *= 0.96;
+    }
+    MYRIAD_FUNCTION static void after_stop(int unit, int, int number, auto& lane) {
+        if (unit == 0) lane.integer_accessory[mode] = 1 + number % 2;
+        if (unit == lane.y.units - 1) lane.parameter[gain] *= 1.01;
+    }
+};
+
 template <class Unit, int threads>
 struct of_team : Unit {
     static constexpr bool scalar_only = true;  // with the functions of one lane
@@ -119,6 +226,12 @@ template <int threads>
 using hoppers = myriad::coupled_units<of_team<hopper, threads>, 14>;
 template <int threads>
 using drifters = myriad::coupled_units<of_team<drifter, threads>, 21>;
+template <int threads>
+using watched_ring = myriad::coupled_units<of_team<watched, threads>, 11>;
+template <int threads>
+using metered_line = myriad::coupled_units<of_team<metered, threads>, 18>;
+template <int threads>
+using adapting_cells = myriad::coupled_units<of_team<adapting, threads>, 17>;
 
 using with_memory = myriad::controlled<myriad::dormand_prince_5, myriad::pi_control>;
 using sampled = myriad::dense<myriad::dormand_prince_5>;

@@ -49,10 +49,10 @@ struct phase_oscillator {
     enum unit_state { phase, lag, n_unit_state };
     enum unit_parameter { speed, n_unit_parameter };
     enum publication { sine, cosine, n_publication };
-    enum { full_sine, banded_cosine, ring_sine, all_round };
-    static constexpr myriad::coupling couplings[] = {myriad::full_coupling(sine), myriad::banded_coupling(cosine, 2),
-                                                     myriad::circulant_coupling(sine, 1),
-                                                     myriad::circulant_coupling(cosine)};
+    enum { full_sine, banded_cosine, ring_sine, all_round, full_cosine };
+    static constexpr myriad::coupling couplings[] = {
+        myriad::full_coupling(sine), myriad::banded_coupling(cosine, 2), myriad::circulant_coupling(sine, 1),
+        myriad::circulant_coupling(cosine), myriad::same_coupling(cosine, full_sine)};
 
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_publication> publish(int, auto, const auto& y, const auto&) {
@@ -62,7 +62,7 @@ struct phase_oscillator {
     MYRIAD_FUNCTION static myriad::vec<R, n_unit_state> rhs(int, auto, const auto& y, const auto& p) {
         return {p.unit_parameter[speed] + y.published(cosine) * y.coupled(full_sine) -
                     y.published(sine) * y.coupled(banded_cosine),
-                y[phase] - y[lag] + y.coupled(ring_sine) + y.coupled(all_round)};
+                y[phase] - y[lag] + y.coupled(ring_sine) + y.coupled(all_round) + y.coupled(full_cosine)};
     }
 };
 template <int n>

@@ -18,7 +18,7 @@ namespace myriad {
 /// Sets the matrix of coupling `k`, its place among `couplings`, for all instances: row i has the weights of what other
 /// units publish in the sum of unit i, in units of the sum per unit of the publication. Throws `error` if the matrix is
 /// not square with a row for each unit, is not circulant though the coupling is, or has entries that are not finite or
-/// outside the band.
+/// outside the band. A `same_coupling` has the matrix of the earlier one, whichever of them it is set for.
 template <class Unit, int units, class R, class K>
 void set_coupling(ensemble<coupled_units<Unit, units>, R>& e, K k, const Eigen::MatrixXd& matrix) {
     static_assert(detail::n_coupling<Unit> > 0, "the units have no `couplings`");
@@ -27,7 +27,7 @@ void set_coupling(ensemble<coupled_units<Unit, units>, R>& e, K k, const Eigen::
     }
     (std::make_integer_sequence<int, detail::n_coupling<Unit>>{});
     static constexpr auto first = []<int... c>(std::integer_sequence<int, c...>) {
-        return std::array{detail::coupling_entries_before<Unit, units, c>()...};
+        return std::array{detail::first_coupling_entry<Unit, units, c>...};
     }
     (std::make_integer_sequence<int, detail::n_coupling<Unit>>{});
     const auto number = static_cast<std::int64_t>(k);

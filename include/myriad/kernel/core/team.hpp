@@ -9,13 +9,15 @@
 #include "myriad/kernel/core/macros.hpp"
 
 #if defined(MYRIAD_SIMULATED_TEAM) && !defined(__CUDACC__)
-// Tests run the threads of a team one after the other on a CPU, each up to where it waits for the others.
+// Tests run the threads of a block, or of a team alone, one after the other on a CPU, each up to where it waits for the
+// others.
 namespace myriad::simulated_team {
+/// Within the block.
 int number_of_thread();
-/// Waits for all threads of the team.
-void synchronise();
-/// The value that another thread has given in the same call.
-std::uint64_t exchange(std::uint64_t value, int from);
+/// Waits for all threads of the team, which are so many.
+void synchronise(int threads);
+/// The value that another thread of the team has given in the same call, by its number within the block.
+std::uint64_t exchange(std::uint64_t value, int from, int threads);
 /// The memory that the threads share.
 void* memory();
 }  // namespace myriad::simulated_team
@@ -70,7 +72,17 @@ struct thread_team {
 #if defined(__CUDA_ARCH__)
         return static_cast<int>(threadIdx.x) % threads;
 #elif defined(MYRIAD_SIMULATED_TEAM) && !defined(__CUDACC__)
-        return simulated_team::number_of_thread();
+        return simulated_team::number_of_thread() % threads;
+#else
+        return 0;
+#endif
+    }
+    /// The number of the team within its block.
+    static MYRIAD_FUNCTION int number_of_team() {
+#if defined(__CUDA_ARCH__)
+        return static_cast<int>(threadIdx.x) / threads;
+#elif defined(MYRIAD_SIMULATED_TEAM) && !defined(__CUDACC__)
+        return simulated_team::number_of_thread() / threads;
 #else
         return 0;
 #endif
@@ -84,7 +96,7 @@ struct thread_team {
 #if defined(__CUDA_ARCH__)
             __syncwarp(mask());
 #elif defined(MYRIAD_SIMULATED_TEAM) && !defined(__CUDACC__)
-            simulated_team::synchronise();
+            simulated_team::synchronise(threads);
 #endif
         }
     }
@@ -126,21 +138,26 @@ struct thread_team {
         }
     }
 
+    /// The value of the thread of that number.
+    template <class T>
+    static MYRIAD_FUNCTION T of_thread(int number, T own) {
+        if constexpr (threads > 1) {
+#if defined(__CUDA_ARCH__)
+            own = __shfl_sync(mask(), own, number, threads);
+#elif defined(MYRIAD_SIMULATED_TEAM) && !defined(__CUDACC__)
+            std::uint64_t bits = 0;
+            __builtin_memcpy(&bits, &own, sizeof own);
+            bits = simulated_team::exchange(bits, number_of_team() * threads + number, threads);
+            __builtin_memcpy(&own, &bits, sizeof own);
+#endif
+        }
+        static_cast<void>(number);
+        return own;
+    }
     /// The value of the leading thread.
     template <class T>
     static MYRIAD_FUNCTION T of_leader(T own) {
-        if constexpr (threads == 1) return own;
-#if defined(__CUDA_ARCH__)
-        return __shfl_sync(mask(), own, 0, threads);
-#elif defined(MYRIAD_SIMULATED_TEAM) && !defined(__CUDACC__)
-        std::uint64_t bits = 0;
-        __builtin_memcpy(&bits, &own, sizeof own);
-        bits = simulated_team::exchange(bits, 0);
-        __builtin_memcpy(&own, &bits, sizeof own);
-        return own;
-#else
-        return own;
-#endif
+        return of_thread(0, own);
     }
 
 private:
@@ -181,7 +198,7 @@ private:
 #if defined(__CUDA_ARCH__)
         return __shfl_xor_sync(mask(), static_cast<device_integer<U>>(own), distance, threads);
 #elif defined(MYRIAD_SIMULATED_TEAM) && !defined(__CUDACC__)
-        return static_cast<U>(simulated_team::exchange(own, number_of_thread() ^ distance));
+        return static_cast<U>(simulated_team::exchange(own, simulated_team::number_of_thread() ^ distance, threads));
 #else
         static_cast<void>(distance);
         return own;

@@ -24,7 +24,7 @@ struct hook_driver {
 
     /// Calls after_step on the lanes whose step was accepted.
     MYRIAD_FUNCTION void after_step(const mask& accepted) {
-        const lane_data<Model, S> before = s.data;
+        const lane_data<Model, S> before = kept();
         mask changed = mask(false);
         if constexpr (has_generic_after_step<Model, R>) {
             lane_data<Model, S> after = s.data;
@@ -70,7 +70,7 @@ struct hook_driver {
         const mask acting = events.fired_lanes();
         if (!MYRIAD_UNLIKELY(any(acting))) return;
         if constexpr (has_after_event<Model>) {
-            const lane_data<Model, S> before = s.data;
+            const lane_data<Model, S> before = kept();
             for_each_lane(acting, [&](int i) MYRIAD_LAMBDA { act_on_lane(i); });
             const mask changed = acting & differs(before, s.data);
             if (any(changed)) {
@@ -124,7 +124,7 @@ struct hook_driver {
             });
             return;
         }
-        const lane_data<Model, S> before = s.data;
+        const lane_data<Model, S> before = kept();
         for_each_lane(due, [&](int i) MYRIAD_LAMBDA {
             stops.act(i, [&](auto j, std::int32_t number) MYRIAD_LAMBDA {
                 if constexpr (has_after_stop<Model>)
@@ -136,6 +136,12 @@ struct hook_driver {
     }
 
 private:
+    /// The data before a hook is called.
+    MYRIAD_FUNCTION lane_data<Model, S> kept() const {
+        lane_data<Model, S> before = s.data;
+        if constexpr (team_size < Model >> 1) as_part<Model>::template keep_inputs<R>(before);
+        return before;
+    }
     /// The new value in these lanes, the old one elsewhere.
     template <class T>
     static MYRIAD_FUNCTION T chosen(const mask& lanes, const T& now, const T& before) {
@@ -282,6 +288,7 @@ private:
             if constexpr (use.acts) different = different | differing(x, y);
         };
         detail::for_each_member<Model>(compare, a, b);
+        if constexpr (team_size < Model >> 1) different = different | as_part<Model>::template inputs_differ<R>();
         return team_for<Model>::any(different);
     }
 

@@ -174,6 +174,7 @@ private:
         const std::int32_t phase = args.phase[index];
         const bool carry_on = args.carry_time && phase > 0;
         set_lane(s.data.t, i, carry_on ? args.t[index] : get_lane(s.data.t_begin, i));
+        [[maybe_unused]] const R t_end_of_all = get_lane(s.data.t_end, i);
         if constexpr (!writes_time_domain<Model>) {  // else its hooks set the ends of phases
             if (args.phase_length != R(0)) {
                 const R t_begin = get_lane(s.data.t_begin, i), t_end = get_lane(s.data.t_end, i);
@@ -181,6 +182,11 @@ private:
                 set_lane(s.data.t_begin, i, part.begin);
                 set_lane(s.data.t_end, i, part.end);
             }
+        }
+        if constexpr (moves_time_domain<Model>) {
+            set_lane(s.data.accessory[Model::places::carries_on], i, carry_on ? R(1) : R(0));
+            set_lane(s.data.accessory[Model::places::goes_to_t_end], i,
+                     get_lane(s.data.t_end, i) == t_end_of_all ? R(1) : R(0));
         }
         set_lane(s.data.phase, i, phase);
         set_lane(s.data.h, i, R(0));

@@ -20,13 +20,7 @@ inline constexpr bool is_of_units<coupled_units<Unit, units>> = true;
 /// Whether a team can integrate a model by a method. Others are integrated by one thread per instance.
 template <class Model, class Method>
 constexpr bool runs_in_teams() {
-    if constexpr (is_of_units<Model>) {
-        using unit = typename Model::unit_type;
-        return !rosenbrock_method<Method> && !has_observe<Model> && !writes_parameters<unit> &&
-               (accessories_are_outputs<unit> || n_accessory<Model> + n_integer_accessory<Model> == 0);
-    } else {
-        return false;
-    }
+    return is_of_units<Model> && !rosenbrock_method<Method>;
 }
 
 /// Most states that one thread takes. Lorenz 96 by tsitouras_5, 131 072 instances, NVIDIA H100, ms for one thread and

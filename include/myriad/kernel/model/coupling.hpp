@@ -19,13 +19,15 @@ enum class coupling_shape : std::uint8_t {
     circulant,  ///< every row is the one above it, moved by one place to the right, round the end
 };
 
-/// A sum over all units: a matrix times what the units publish. Made by `full_coupling`, `banded_coupling` and
-/// `circulant_coupling`; its entries are set by `set_coupling`, on the host, and are the same for all instances.
+/// A sum over all units: a matrix times what the units publish. Made by `full_coupling`, `banded_coupling`,
+/// `circulant_coupling` and `same_coupling`; its entries are set by `set_coupling`, on the host, and are the same for
+/// all instances.
 struct coupling {
     int publication;               ///< number of the publication that is summed
     coupling_shape shape;          ///< which entries there are
     int bandwidth;                 ///< diagonals with entries on either side of the main one; -1: all
     const char* publication_type;  ///< a mark of the type of the publication, for checks
+    int matrix_of = -1;            ///< number of the coupling whose matrix it has; -1: one of its own
 };
 
 /// By a matrix of any entries.
@@ -43,6 +45,12 @@ constexpr coupling banded_coupling(Publication publication, int bandwidth) {
 template <class Publication>
 constexpr coupling circulant_coupling(Publication publication, int bandwidth = -1) {
     return {static_cast<int>(publication), coupling_shape::circulant, bandwidth, &detail::type_mark<Publication>};
+}
+/// By the matrix of an earlier coupling, its place among `couplings`.
+template <class Publication, class K>
+constexpr coupling same_coupling(Publication publication, K earlier) {
+    return {static_cast<int>(publication), coupling_shape::full, -1, &detail::type_mark<Publication>,
+            static_cast<int>(earlier)};
 }
 
 }  // namespace myriad
@@ -83,10 +91,14 @@ struct coupling_layout {
     MYRIAD_FUNCTION int entry(int row, int k) const { return shape == coupling_shape::circulant ? k : k * units + row; }
     MYRIAD_FUNCTION bool in_matrix(int column) const { return column >= 0 && column < units; }
 };
+/// The number of the coupling whose matrix coupling k has: its own, or an earlier one.
+template <class Unit, int k>
+inline constexpr int coupling_with_matrix = Unit::couplings[k].matrix_of < 0 ? k : Unit::couplings[k].matrix_of;
 /// Without the mark of a type, which device code cannot use.
 template <class Unit, int units, int k>
-inline constexpr coupling_layout coupling_layout_of{Unit::couplings[k].publication, Unit::couplings[k].shape,
-                                                    Unit::couplings[k].bandwidth, units};
+inline constexpr coupling_layout coupling_layout_of{Unit::couplings[k].publication,
+                                                    Unit::couplings[coupling_with_matrix<Unit, k>].shape,
+                                                    Unit::couplings[coupling_with_matrix<Unit, k>].bandwidth, units};
 
 /// Number of entries of the couplings before coupling `end`.
 template <class Unit, int units, int end = n_coupling<Unit>>
@@ -94,12 +106,14 @@ constexpr int coupling_entries_before() {
     if constexpr (end == 0) {
         return 0;
     } else {
-        return coupling_entries_before<Unit, units, end - 1>() + coupling_layout_of<Unit, units, end - 1>.entries();
+        constexpr bool has_own = coupling_with_matrix<Unit, end - 1> == end - 1;
+        return coupling_entries_before<Unit, units, end - 1>() +
+               (has_own ? coupling_layout_of<Unit, units, end - 1>.entries() : 0);
     }
 }
 
 template <class Unit, int units, int k>
-inline constexpr int first_coupling_entry = coupling_entries_before<Unit, units, k>();
+inline constexpr int first_coupling_entry = coupling_entries_before<Unit, units, coupling_with_matrix<Unit, k>>();
 
 /// Whether a mark of a type stands for a number, or for the units' enumeration of publications.
 template <class Unit>
@@ -134,6 +148,12 @@ constexpr bool check_couplings() {
                       }),
                       "the band of a coupling does not fit: a banded matrix has fewer diagonals on either side of the "
                       "main one than there are units, a circulant one fewer than half as many");
+        static_assert(all_of([](const coupling& c) {
+                          const coupling* const all = std::data(Unit::couplings);
+                          return c.matrix_of < 0 || (c.matrix_of < &c - all && all[c.matrix_of].matrix_of < 0);
+                      }),
+                      "a coupling has the matrix of one that is not earlier, or that has none of its own: give "
+                      "same_coupling the number of an earlier full, banded or circulant coupling");
     }
     return true;
 }

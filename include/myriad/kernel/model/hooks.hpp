@@ -45,7 +45,7 @@ template <class Model, class R>
 constexpr bool check_hooks(const vec<R, n_state<Model>>* y = nullptr, const inputs<Model, R>* p = nullptr,
                            lane<Model, R>* l = nullptr) {
     check_model<Model>();
-    check_summaries<Model>();
+    check_summaries<whole_of<Model>>();
     static_cast<void>(y), static_cast<void>(p), static_cast<void>(l);
     using slopes = vec<R, n_state<Model>>;
     using square = matrix<R, n_state<Model>>;

@@ -69,10 +69,22 @@ struct shared_values {
     }
 };
 
+}  // namespace myriad::inline MYRIAD_TARGET
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+/// Where inputs lie that a team of threads has in its memory: model/part_of_units.hpp.
+template <class Model>
+struct place_of_inputs {};
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET
+
+namespace myriad::inline MYRIAD_TARGET {
+
 /// The argument p of rhs and events: `p[i]` is parameter i of the instance, `p.shared[i]` a value common to all
 /// instances. It has no accessories in a model that declares them outputs.
 template <class Model, class S>
-struct inputs : accessories<Model, S, !detail::accessories_are_outputs<Model>> {
+struct inputs : accessories<Model, S, !detail::accessories_are_outputs<Model>>, detail::place_of_inputs<Model> {
     using real = real_of<S>;  ///< double or float
     /// The parameters of the instance; `p[k]` is short for `p.parameter[k]`.
     vec<S, detail::n_parameter<Model>> parameter;

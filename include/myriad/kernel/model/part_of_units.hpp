@@ -28,12 +28,24 @@ struct team_layout {
     // Of states, for a right-hand side component by component, so that neighbours' are side by side, else unit by unit;
     // behind them the event functions, of which both may be dual numbers.
     static constexpr int state = 0;
-    static constexpr int parameter = n_event<Whole> > 0 ? 2 * (n_state<Whole> + n_event<Whole>) : n_state<Whole>;
+    static constexpr int parameter = n_event<Whole> > 0 || n_observed<Whole> > 0 ? 2 * (n_state<Whole> + n_event<Whole>)
+                                                                                 : n_state<Whole>;
     static constexpr int accessory = parameter + n_parameter<Whole>;  // of the system, then of the units, as parameters
     static constexpr int integer_accessory = accessory + n_accessory<Whole>;
     static constexpr int published = integer_accessory + n_integer_accessory<Whole>;
     static constexpr int sum = published + units * n_publication<unit>;
-    static constexpr int end = sum + units * n_coupling<unit>;
+    static constexpr int kept = sum + units * n_coupling<unit>;
+    // Parameters and accessories as they were before a hook, if right-hand sides and events may see that it writes
+    // them.
+    static constexpr int inputs = published - parameter;
+    static constexpr bool keeps_inputs =
+        writes_parameters<Whole> ||
+        (!accessories_are_outputs<Whole> && n_accessory<Whole> + n_integer_accessory<Whole> > 0);
+    static constexpr int end = kept + (keeps_inputs ? inputs : 0);
+};
+template <class Whole, int threads>
+requires team_layout<Whole>::keeps_inputs struct place_of_inputs<part_of_units<Whole, threads>> {
+    int in_memory = team_layout<Whole>::parameter;
 };
 /// Numbers from one team's values to the next one's: the teams of a warp read side by side from different banks.
 template <class Whole, int threads, class R>
@@ -90,8 +102,8 @@ struct team_inputs {
     const R* parameter;
     const R* shared;
     const std::int32_t* shared_integer;
-    vec<R, 0> accessory;
-    vec<std::int32_t, 0> integer_accessory;
+    const R* accessory;
+    const integer_of<R>* integer_accessory;
 
     template <class I>
     MYRIAD_FUNCTION const R& operator[](I i) const {
@@ -108,7 +120,7 @@ struct team_lane {
     const R& h;
     R& h_next;
     R* y;
-    const R* parameter;
+    std::conditional_t<writes_parameters<Whole>, R, const R>* parameter;
     const R* shared;
     const std::int32_t* shared_integer;
     R* accessory;
@@ -118,8 +130,18 @@ struct team_lane {
     const integer_of<R>* event_count;
 };
 
+/// The summaries of the units of a thread: the receivers are counted as among `units` units.
+template <class Whole, int units>
+struct part_summaries {};
+template <class Whole, int units>
+requires has_summaries<Whole>
+struct part_summaries<Whole, units> {
+    static constexpr auto summaries = detail::summaries_of_units<typename Whole::unit_type, units>();
+    static_assert(check_summaries<Whole>());
+};
+
 template <class Whole, int threads>
-struct part_of_units {
+struct part_of_units : part_summaries<Whole, (Whole::n_unit + threads - 1) / threads> {
     using unit_type = typename Whole::unit_type;
     using layout = team_layout<Whole>;
     using together = thread_team<threads>;
@@ -128,7 +150,10 @@ struct part_of_units {
     static constexpr int n_state = parts * states_of_unit;
     static constexpr int n_shared = detail::n_shared<Whole>, n_shared_integer = detail::n_shared_integer<Whole>;
     static constexpr int n_event = detail::n_event<Whole>, n_stop = detail::n_stop<Whole>;
+    static constexpr int n_observed = parts * n_unit_observed<unit_type>;
     static constexpr bool writes_time_domain = detail::writes_time_domain<Whole>;
+    static constexpr bool accessories_are_outputs = detail::accessories_are_outputs<Whole>,
+                          writes_parameters = detail::writes_parameters<Whole>;
 
     template <class R>
     static constexpr int stride = team_stride<Whole, threads, R>();
@@ -156,11 +181,7 @@ struct part_of_units {
     }
     template <class R>
     static MYRIAD_FUNCTION R* memory() {
-        R* first = static_cast<R*>(memory_of_block()) + 2 * detail::n_state<Whole>;
-#if defined(__CUDA_ARCH__)
-        first += threadIdx.x / threads * stride<R>;
-#endif
-        return first;
+        return static_cast<R*>(memory_of_block()) + 2 * detail::n_state<Whole> + together::number_of_team() * stride<R>;
     }
 
     /// Copies the tolerances there, by `all` threads with consecutive numbers; they are to wait for each other then.
@@ -200,9 +221,34 @@ struct part_of_units {
         copy(constant_index<n_integer_accessory<Whole>>{}, integer_accessories<R>(), args.integer_accessory);
         together::synchronise();
     }
-    /// Copies the accessories, which hooks may have written, back.
+    /// Keeps the inputs in the team's memory as they are: those of `before`, which is a copy of the data.
+    template <class R>
+    static MYRIAD_FUNCTION void keep_inputs([[maybe_unused]] auto& before) {
+        if constexpr (layout::keeps_inputs) {
+            together::synchronise();  // all have read what lies there
+            share_out<layout::inputs>(
+                [](int c) MYRIAD_LAMBDA { memory<R>()[layout::kept + c] = memory<R>()[layout::parameter + c]; });
+            together::synchronise();
+            before.in_memory = layout::kept;
+        }
+    }
+    /// Whether this thread's share of them differs from those kept.
+    template <class R>
+    static MYRIAD_FUNCTION bool inputs_differ() {
+        bool different = false;
+        if constexpr (layout::keeps_inputs) {
+            together::synchronise();  // all have written them
+            share_out<layout::inputs>([&](int c) MYRIAD_LAMBDA {
+                const R *const kept = memory<R>() + layout::kept, *const now = memory<R>() + layout::parameter;
+                different = different || differs_in_bits(kept[c], now[c]);
+            });
+        }
+        return different;
+    }
+    /// Copies the accessories and parameters, which hooks may have written, back.
     template <class Arguments>
     static MYRIAD_FUNCTION void store(const Arguments& args, std::int64_t instance) {
+        together::synchronise();  // all have written them
         using R = std::remove_cvref_t<decltype(args.relative_tolerance[0])>;
         share_out<n_accessory<Whole>>([&](int c) MYRIAD_LAMBDA {
             args.accessory[c * args.size + instance] = memory<R>()[layout::accessory + c];
@@ -210,10 +256,16 @@ struct part_of_units {
         share_out<n_integer_accessory<Whole>>([&](int c) MYRIAD_LAMBDA {
             args.integer_accessory[c * args.size + instance] = static_cast<std::int32_t>(integer_accessories<R>()[c]);
         });
+        if constexpr (writes_parameters) {
+            share_out<n_parameter<Whole>>([&](int c) MYRIAD_LAMBDA {
+                args.parameter[c * args.size + instance] = memory<R>()[layout::parameter + c];
+            });
+        }
     }
     /// Records the accessories where `to(array, column)` says.
     template <class Arguments, class To>
     static MYRIAD_FUNCTION void record(const Arguments& args, To&& to) {
+        together::synchronise();  // all have written them
         using R = std::remove_cvref_t<decltype(args.relative_tolerance[0])>;
         share_out<n_accessory<Whole>>([&](int c) MYRIAD_LAMBDA {
             const int column = args.accessory_column[c];
@@ -246,7 +298,11 @@ struct part_of_units {
 
     template <class R>
     static MYRIAD_FUNCTION team_inputs<R> inputs_of_team(const auto& p) {
-        return {memory<R>() + layout::parameter, p.shared, p.shared_integer, {}, {}};
+        int first = layout::parameter;
+        if constexpr (layout::keeps_inputs) first = p.in_memory;
+        const R* const accessory = memory<R>() + first + n_parameter<Whole>;
+        return {memory<R>() + first, p.shared, p.shared_integer, accessory,
+                reinterpret_cast<const integer_of<R>*>(accessory + n_accessory<Whole>)};
     }
 
     /// The event functions of all units, in every thread.
@@ -272,6 +328,34 @@ struct part_of_units {
         for (int j = 0; j < n_event; ++j) values[j] = of_all[j];
         return values;
     }
+    /// The quantities that the thread's units observe.
+    template <class S>
+    MYRIAD_FUNCTION static vec<S, n_observed> observe(auto t, const vec<S, n_state>& y, const auto& p) {
+        using R = real_of<S>;
+        constexpr int count = n_unit_observed<unit_type>;
+        const S* const states = put_states<S>([&](int c) MYRIAD_LAMBDA { return y[c]; });
+        const team_inputs<R> inputs = inputs_of_team<R>(p);
+        vec<S, n_observed> values;
+        MYRIAD_UNROLL
+        for (int part = 0; part < parts; ++part) {
+            const int unit = unit_of(part);
+            const vec<S, count> of_unit =
+                unit_type::template observe<S>(unit, t, unit_states<unit_type, units, const S>{states, unit},
+                                               unit_inputs<unit_type, units, R, R, team_inputs<R>>(inputs, unit));
+            for (int q = 0; q < count; ++q) values[part * count + q] = of_unit[q];
+        }
+        return values;
+    }
+    /// Whether it is this thread that keeps the summaries of its quantity of that number.
+    static MYRIAD_FUNCTION bool keeps(int quantity) { return is_own(quantity / n_unit_observed<unit_type>); }
+    /// The receiver of a summary, as it is numbered there.
+    template <class R>
+    static MYRIAD_FUNCTION R& receiver(int number) {
+        constexpr int size = n_unit_accessory<unit_type>, of_system = n_accessory<unit_type>;
+        const int part = (number - of_system) / size;
+        return memory<R>()[layout::accessory + of_system + unit_of(part) * size + (number - of_system) % size];
+    }
+
     template <class R>
     MYRIAD_FUNCTION static R stop_time(int stop, int number, const auto& p) {
         return Whole::template stop_time<R>(stop, number, inputs_of_team<R>(p));

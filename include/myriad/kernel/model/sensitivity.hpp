@@ -7,21 +7,37 @@
 #include "myriad/kernel/model/moving_summaries.hpp"
 #include "myriad/kernel/model/variations.hpp"
 
+namespace myriad {
+
+/// The ends of the time domain of all phases, which `with_sensitivities` has derivatives by.
+enum class time_domain {
+    t_begin,  ///< where phases start, unless time is carried on
+    t_end,    ///< where they end at the latest
+};
+
+}  // namespace myriad
+
 namespace myriad::detail {
 
-/// The component that an enumerator of the model's names.
+/// The component that an enumerator of the model's, or of the time domain's ends, names.
 template <class Model, auto component>
 constexpr moving_component moving_of() {
     using E = std::remove_cv_t<decltype(component)>;
-    constexpr int number = static_cast<int>(component);
-    constexpr bool is_state = enumerates_state<Model, E>(), is_parameter = enumerates_parameter<Model, E>(),
-                   is_shared = enumerates_shared<Model, E>();
-    static_assert(is_state || is_parameter || is_shared,
-                  "with_sensitivities takes enumerators of the model's states, parameters and shared values: "
-                  "with_sensitivities<model, model::k, model::x>");
-    constexpr int count = is_state ? n_state<Model> : is_parameter ? n_parameter<Model> : n_shared<Model>;
-    static_assert(number >= 0 && number < count, "with_sensitivities names a component that the model does not have");
-    return {is_state ? moving::state : is_parameter ? moving::parameter : moving::shared, number};
+    if constexpr (std::is_same_v<E, time_domain>) {
+        return {component == time_domain::t_begin ? moving::t_begin : moving::t_end, 0};
+    } else {
+        constexpr int number = static_cast<int>(component);
+        constexpr bool is_state = enumerates_state<Model, E>(), is_parameter = enumerates_parameter<Model, E>(),
+                       is_shared = enumerates_shared<Model, E>();
+        static_assert(
+            is_state || is_parameter || is_shared,
+            "with_sensitivities takes enumerators of the model's states, parameters and shared values, and of "
+            "myriad::time_domain: with_sensitivities<model, model::k, model::x, myriad::time_domain::t_end>");
+        constexpr int count = is_state ? n_state<Model> : is_parameter ? n_parameter<Model> : n_shared<Model>;
+        static_assert(number >= 0 && number < count,
+                      "with_sensitivities names a component that the model does not have");
+        return {is_state ? moving::state : is_parameter ? moving::parameter : moving::shared, number};
+    }
 }
 
 /// What a model with sensitivities keeps among its accessories, behind those of the model.
@@ -32,6 +48,10 @@ struct sensitivity_places {
     static constexpr int event_time = time + directions;
     static constexpr int undefined = event_time + 1;
     static constexpr int count = undefined + 1;
+    /// In directions by the time domain's ends, 1 or 0 for each phase: whether it carries on from the last one, and
+    /// whether it goes to t_end and not to an end that `phase_length` counts from t_begin.
+    static constexpr int carries_on = count;
+    static constexpr int goes_to_t_end = carries_on + 1;
 };
 
 /// Directions along given components, in which accessories and times of events move too.
@@ -43,7 +63,27 @@ struct component_directions {
     static constexpr moving_component all[] = {moving_of<Model, wrt>()...};
     template <int i>
     static constexpr moving_component at = all[i];
+    static constexpr bool move_time_domain = ((moving_of<Model, wrt>().kind == moving::t_begin) || ...) ||
+                                             ((moving_of<Model, wrt>().kind == moving::t_end) || ...);
     using places = sensitivity_places<Model, count>;
+
+    /// The derivatives in direction i of the begin and the end of a phase that starts at its t_begin and reaches its
+    /// t_end.
+    template <class S, int i>
+    MYRIAD_FUNCTION static S of_begin() {
+        constexpr moving_component its = at<i>;
+        return S(real_of<S>(its.kind == moving::t_begin ? 1 : 0));
+    }
+    template <class S, int i>
+    MYRIAD_FUNCTION static S of_end(const auto& wrapped) {
+        constexpr moving_component its = at<i>;
+        const S at_t_end = wrapped.accessory[places::goes_to_t_end];
+        if constexpr (its.kind == moving::t_end) {
+            return at_t_end;
+        } else {
+            return of_begin<S, i>() * (S(real_of<S>(1)) - at_t_end);
+        }
+    }
 
     /// An action after an event, by `cross`, which returns false if it made something jump that has no derivative.
     /// Keeps the time and its derivatives, as the phase may end here. What an action sets has no derivative if the time
@@ -119,12 +159,13 @@ public:
 namespace myriad {
 
 /// Model with the derivatives of its solution with respect to components of its own, named by their enumerators:
-/// initial states, parameters and shared values. Itself a model: `with_sensitivities<Model, Model::k, Model::x>` has,
-/// after the states of Model, `sensitivity(c, i)`, the derivative of state c by component i of the list, which `rhs`
-/// called with dual numbers determines; after the accessories of Model `accessory_sensitivity(a, i)`, their
-/// derivatives, and `time_sensitivity(i)`, that of the time at which the phase ended. They are derivatives of the
-/// numbers beside them: at a given time within a phase, and at its end too, unless an event ended it, whose time
-/// depends on the component. Actions transform them as they transform the distance to a neighbouring solution.
+/// initial states, parameters and shared values, or by the ends of the time domain, `time_domain::t_begin` and
+/// `time_domain::t_end`. Itself a model: `with_sensitivities<Model, Model::k, Model::x>` has, after the states of
+/// Model, `sensitivity(c, i)`, the derivative of state c by component i of the list, which `rhs` called with dual
+/// numbers determines; after the accessories of Model `accessory_sensitivity(a, i)`, their derivatives, and
+/// `time_sensitivity(i)`, that of the time at which the phase ended. They are derivatives of the numbers beside them:
+/// at a given time within a phase, and at its end too, unless an event ended it, whose time depends on the component,
+/// or it is an end that they are by. Actions transform them as they transform the distance to a neighbouring solution.
 /// `initial_sensitivities(ensemble)` sets them where the solution starts.
 ///
 /// What a derivative at an event needs and does not exist, as where the solution only touches the surface, makes the
@@ -164,17 +205,23 @@ struct with_sensitivities : detail::observing<Model, detail::component_direction
     MYRIAD_FUNCTION static int time_sensitivity(int i = 0) { return places::time + i; }
     static constexpr int event_time = places::event_time;  ///< the time of the phase's last event, or of its begin
     static constexpr int undefined = places::undefined;    ///< number of events at which a derivative did not exist
-    static constexpr int n_accessory = places::count;      ///< number of all accessories
+    static constexpr int n_accessory = places::count + (directions::move_time_domain ? 2 : 0);  ///< of all accessories
 
     /// The model's own hook, and what derivatives need of the phase's begin.
     MYRIAD_FUNCTION static void initialise(auto& wrapped) {
         using R = std::remove_cvref_t<decltype(wrapped.t)>;
-        const bool continues =
+        constexpr bool begins_move = directions::move_time_domain;
+        bool continues =
             wrapped.phase != 0 && wrapped.t != wrapped.t_begin && wrapped.t == wrapped.accessory[event_time];
         vec<R, n_directions> dt{};
+        if constexpr (begins_move) {
+            continues = wrapped.accessory[places::carries_on] != R(0);
+            detail::static_for<0, n_directions>(
+                [&](auto i) MYRIAD_LAMBDA { dt[i] = directions::template of_begin<R, decltype(i)::value>(); });
+        }
         if (wrapped.phase == 0) {
-            for (int a = detail::n_accessory<Model>; a < n_accessory; ++a) wrapped.accessory[a] = R(0);
-        } else if (continues) {  // from an event, whose time is another in neighbouring solutions
+            for (int a = detail::n_accessory<Model>; a < places::count; ++a) wrapped.accessory[a] = R(0);
+        } else if (continues) {  // from a time that is another in neighbouring solutions
             dt = detail::part<n_directions>(wrapped.accessory, places::time);
         }
         auto v = detail::part<n_tangent>(wrapped.y, n_original);
@@ -182,7 +229,7 @@ struct with_sensitivities : detail::observing<Model, detail::component_direction
             v = detail::move_through<Model, directions>(wrapped, v, dt,
                                                         [](auto& own) MYRIAD_LAMBDA { Model::initialise(own); });
         if constexpr (detail::has_summaries<Model>) moved::begin(wrapped, v, dt);
-        if (continues) shift(wrapped, v, dt, R(-1));
+        if (continues || begins_move) shift(wrapped, v, dt, R(-1));
         detail::set_part(wrapped.y, n_original, v);
         detail::set_part(wrapped.accessory, places::time, dt);
         wrapped.accessory[event_time] = wrapped.t;
@@ -194,8 +241,16 @@ struct with_sensitivities : detail::observing<Model, detail::component_direction
         using R = std::remove_cvref_t<decltype(wrapped.t)>;
         vec<R, n_directions> dt{};
         auto v = detail::part<n_tangent>(wrapped.y, n_original);
-        if (wrapped.t == wrapped.accessory[event_time] && wrapped.t != wrapped.t_end) {
-            dt = detail::part<n_directions>(wrapped.accessory, places::time);
+        const bool at_event = wrapped.t == wrapped.accessory[event_time] && wrapped.t != wrapped.t_end;
+        const bool at_end = directions::move_time_domain && wrapped.t == wrapped.t_end;
+        if (at_event) dt = detail::part<n_directions>(wrapped.accessory, places::time);
+        if constexpr (directions::move_time_domain) {
+            if (at_end) {
+                detail::static_for<0, n_directions>(
+                    [&](auto i) MYRIAD_LAMBDA { dt[i] = directions::template of_end<R, decltype(i)::value>(wrapped); });
+            }
+        }
+        if (at_event || at_end) {
             shift(wrapped, v, dt, R(1));
             if constexpr (detail::has_summaries<Model>) moved::extend(wrapped, dt, R(1));
             if (!detail::all_finite(dt)) wrapped.accessory[undefined] += R(1);

@@ -37,8 +37,8 @@ struct moving_shared_lane : lane<Model, dual<S>> {
 
 namespace myriad::detail {
 
-/// What a neighbouring solution differs in: its state alone, or a value of the model too.
-enum class moving : char { state, parameter, shared };
+/// What a neighbouring solution differs in: its state alone, a value of the model, or an end of its time domain.
+enum class moving : char { state, parameter, shared, t_begin, t_end };
 struct moving_component {
     moving kind;
     int number;
@@ -50,6 +50,7 @@ struct state_directions {
     static constexpr int count = vectors;
     static constexpr bool carries_accessories = false;  ///< whether accessories have derivatives
     static constexpr bool keeps_times = false;          ///< whether what the times of events depend on is kept
+    static constexpr bool move_time_domain = false;     ///< whether t_begin or t_end have derivatives
     template <int>
     static constexpr moving_component at = {moving::state, 0};
 };
@@ -146,7 +147,7 @@ MYRIAD_FUNCTION decltype(auto) inputs_along(const From& from) {
     constexpr moving_component its = Directions::template at<i>;
     constexpr bool accessories_move =
         Directions::carries_accessories && n_accessory < Model >> 0 && !accessories_are_outputs<Model>;
-    if constexpr (its.kind == moving::state && !accessories_move) {
+    if constexpr (its.kind != moving::parameter && its.kind != moving::shared && !accessories_move) {
         if constexpr (requires { from.h_next; }) {
             return detail::inputs_in<Model>(from);
         } else {
@@ -223,6 +224,10 @@ MYRIAD_FUNCTION lane_data<Model, dual<S>> moving_lane(const lane<W, S>& l, const
     d.t = dual<S>(l.t, dt);
     d.t_begin = l.t_begin;
     d.t_end = l.t_end;
+    if constexpr (Directions::move_time_domain) {
+        d.t_begin.derivative = Directions::template of_begin<S, i>();
+        d.t_end.derivative = Directions::template of_end<S, i>(l);
+    }
     d.h = l.h;
     d.h_next = l.h_next;
     d.y = along(part<n_state<Model>>(l.y), direction);

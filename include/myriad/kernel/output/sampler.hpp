@@ -100,12 +100,9 @@ private:
         detail::ensure_interpolant<Model>(s, step, due);
         while (any(due)) {
             const S theta = (o.next - step.t) / step.h;
-            const auto inside = inside_step(step, theta);
-            vec<S, n> y;
-            MYRIAD_UNROLL
-            for (int c = 0; c < n; ++c) y[c] = select(is_past(o.next, t1), trial.y[c], inside[c]);
+            const auto y = sampled_state(step, theta, is_past(o.next, t1));
             for_each_lane(due, [&](int i) MYRIAD_LAMBDA {
-                store(i, get_lane(o.next, i), get_lanes<R>(y, i));
+                store_values(i, get_lane(o.next, i), [&](int c) MYRIAD_LAMBDA { return get_lane(y(c), i); });
                 ++o.index[i];
                 set_next(i);
             });
@@ -113,13 +110,20 @@ private:
         }
     }
 
-    /// The state at that part of a step.
-    MYRIAD_FUNCTION vec<S, n> inside_step(const step_data<Method, S, n>& step, const S& theta) const {
+    /// The state at that part of a step, or at its end, as a function of the component. Stages in shared memory are
+    /// read where they are, for what is stored alone.
+    MYRIAD_FUNCTION auto sampled_state(const step_data<Method, S, n>& step, const S& theta, const mask& at_end) const {
         if constexpr (shares_stages<Method, Model, S>) {
-            const vec<S, n> y = s.data.y;  // a copy, as the loop over components indexes memory
-            return detail::rosenbrock_interpolation<Method>(y, detail::stages_of_thread<Method, Model, S>(), theta);
+            return [&step, theta, at_end](int c) MYRIAD_LAMBDA {
+                const auto& stages = detail::stages_of_thread<Method, Model, S>();
+                const S inside = detail::rosenbrock_interpolation<Method>(step.y, stages, theta, c);
+                return select(at_end, stages.y[c], inside);
+            };
         } else {
-            return detail::interpolate(step, theta);
+            vec<S, n> y = detail::interpolate(step, theta);
+            MYRIAD_UNROLL
+            for (int c = 0; c < n; ++c) y[c] = select(at_end, step.trial.y[c], y[c]);
+            return [y](int c) MYRIAD_LAMBDA { return y[c]; };
         }
     }
 
@@ -163,14 +167,21 @@ private:
     }
 
     MYRIAD_FUNCTION void store(int i, R t, const vec<R, n>& y) const {
+        store_values(i, t, [&](int c) MYRIAD_LAMBDA { return y[c]; });
+    }
+    /// Stores a sample, a component of which is y(component).
+    template <class State>
+    MYRIAD_FUNCTION void store_values(int i, R t, State&& y) const {
         std::int32_t& stored = args.sample.stored[s.instance[i]];
         if (stored >= args.sample.capacity) return;
         const std::int64_t cell = static_cast<std::int64_t>(stored) * args.size + s.instance[i];
         args.sample.time[cell] = t;
+        std::int64_t apart = args.size * args.sample.capacity;
+        MYRIAD_OPTIMISATION_BARRIER(apart);  // else each column's place is in registers throughout the loop over steps
         MYRIAD_UNROLL
         for (int c = 0; c < n; ++c) {
             const int column = args.sample_column[detail::whole_state<Model>(c)];
-            if (column >= 0) args.sample.values[column * (args.size * args.sample.capacity) + cell] = y[c];
+            if (column >= 0) args.sample.values[column * apart + cell] = y(c);
         }
         team_for<Model>::synchronise();  // all have read the number
         if (team_for<Model>::leads()) ++stored;

@@ -54,8 +54,8 @@ struct summariser {
         static_for<0, n_summary<Model>>([&](auto r) MYRIAD_LAMBDA {
             constexpr unmarked_summary what = summary_at<Model, decltype(r)::value>;
             constexpr bool time = what.kind == over_phase::time_of_maximum || what.kind == over_phase::time_of_minimum;
-            set_lane(s.data.accessory[what.accessory], i,
-                     time ? one.t : (what.kind == over_phase::integral ? R(0) : q[what.quantity]));
+            const R first = time ? one.t : (what.kind == over_phase::integral ? R(0) : q[what.quantity]);
+            if (keeps<what.quantity>()) set_lane(receiver<what.accessory>(), i, first);
         });
     }
 
@@ -63,6 +63,10 @@ struct summariser {
     /// lanes in which an accessory has changed.
     MYRIAD_FUNCTION mask summarise(const trial_step<Method, S, n>& trial, const S& t1, const mask& accepted) {
         const auto before = s.data.accessory;
+        if constexpr (sees_summaries<Model> && team_size < Model >> 1) {
+            inputs<Model, S> now = s.data;
+            as_part<Model>::template keep_inputs<R>(now);
+        }
         step_type step{{s.now(), s.h, s.data.y, trial, s.slopes.end(), {}}, {}};
         if constexpr (interpolates_with_slope_end<Method> ||
                       (seeks_extrema<Model> && interpolates_between_slopes<Method>))
@@ -79,7 +83,7 @@ struct summariser {
                 search = search | (accepted & may_turn(first[q], last[q]));
             }
         });
-        if (MYRIAD_UNLIKELY(any(search))) {
+        if (MYRIAD_UNLIKELY(any(team_for<Model>::any(search)))) {
             if constexpr (is_pack<S>) {
                 // Copies, so that the caller's variables need no address and stay in registers.
                 const trial_step<Method, S, n> trial_copy = trial;
@@ -98,6 +102,8 @@ struct summariser {
             MYRIAD_UNROLL
             for (int a = 0; a < n_accessory<Model>; ++a)
                 changed = changed | (accepted & differs_in_bits(before[a], s.data.accessory[a]));
+            if constexpr (team_size < Model >> 1)
+                changed = accepted & team_for<Model>::any(as_part<Model>::template inputs_differ<R>());
         }
         return changed;
     }
@@ -105,6 +111,25 @@ struct summariser {
 private:
     template <int q, over_phase kind>
     static constexpr bool extreme = summarises<Model>(q, kind);
+
+    /// Whether this thread keeps the summaries of its quantity q: of several, those that there are.
+    template <int q>
+    static MYRIAD_FUNCTION bool keeps() {
+        if constexpr (team_size<Model> == 1) {
+            return true;
+        } else {
+            return as_part<Model>::keeps(q);
+        }
+    }
+    /// The accessory that receives a summary.
+    template <int number>
+    MYRIAD_FUNCTION S& receiver() const {
+        if constexpr (team_size<Model> == 1) {
+            return s.data.accessory[number];
+        } else {
+            return as_part<Model>::template receiver<S>(number);
+        }
+    }
 
     /// The quantities at theta = `end`, with their slopes along the solution per step.
     template <int end>
@@ -163,13 +188,14 @@ private:
     template <int q, over_phase kind, over_phase its_time>
     MYRIAD_FUNCTION void consider_for(const mask& lanes, const slopes& there, const S& t) {
         if constexpr (extreme<q, kind>) {
+            if (!keeps<q>()) return;
             const S& value = there[q].value;
-            S& best = s.data.accessory[summarised_into<Model, q, kind>];
+            S& best = receiver<summarised_into<Model, q, kind>>();
             const mask better =
                 lanes & ((kind == over_phase::maximum ? value > best : value < best) | (value != value));
             best = select(better, value, best);
             if constexpr (extreme<q, its_time>) {
-                S& when = s.data.accessory[summarised_into<Model, q, its_time>];
+                S& when = receiver<summarised_into<Model, q, its_time>>();
                 when = select(better, t, when);
             }
             each_companion<q, kind>(
@@ -221,19 +247,35 @@ private:
         search_inside(step, first, last, search);
     }
 
-    /// One quantity and sign after the other, with the same code: 1 for the maximum, -1 for the minimum.
-    MYRIAD_FUNCTION void search_inside(step_type& step, const slopes& first, const slopes& last, const mask& search) {
+    /// One quantity and sign after the other, with the same code: 1 for the maximum, -1 for the minimum. In a team, one
+    /// thread's quantity after the other's: all threads look at the same point of the step, as the quantity may depend
+    /// on the states of all.
+    MYRIAD_FUNCTION void search_inside(step_type& step, const slopes& first, const slopes& last, mask search) {
+        search = team_for<Model>::any(search);
         if constexpr (!integrates) know_interpolant(step, search);
         static_for<0, m>([&](auto j) MYRIAD_LAMBDA {
             constexpr int q = decltype(j)::value;
             constexpr bool maximum = extreme<q, over_phase::maximum>, minimum = extreme<q, over_phase::minimum>;
             if constexpr (maximum || minimum) {
-                const turn middle = turn_between<q>(step, search, first[q], last[q]);
                 MYRIAD_ROLLED
-                for (int sign = maximum ? 1 : -1; sign >= (minimum ? -1 : 1); sign -= 2)
-                    find_extremum<q>(step, static_cast<R>(sign), search, first[q], last[q], middle);
+                for (int thread = 0; thread < team_size<Model>; ++thread) {
+                    if (!team_for<Model>::of_thread(thread, keeps<q>())) continue;
+                    const dual<S> at_first = of_thread(thread, first[q]), at_last = of_thread(thread, last[q]);
+                    const turn middle = turn_between<q>(step, search, at_first, at_last, thread);
+                    MYRIAD_ROLLED
+                    for (int sign = maximum ? 1 : -1; sign >= (minimum ? -1 : 1); sign -= 2)
+                        find_extremum<q>(step, static_cast<R>(sign), search, at_first, at_last, middle, thread);
+                }
             }
         });
+    }
+    static MYRIAD_FUNCTION dual<S> of_thread(int thread, const dual<S>& own) {
+        return {team_for<Model>::of_thread(thread, own.value), team_for<Model>::of_thread(thread, own.derivative)};
+    }
+    /// The slope of a thread's quantity inside the step.
+    template <int q>
+    MYRIAD_FUNCTION S slope_at(const step_type& step, const S& theta, int thread) const {
+        return team_for<Model>::of_thread(thread, look_at(step, theta)[q].derivative);
     }
 
     /// The quantities and their slopes inside the step.
@@ -258,7 +300,7 @@ private:
     /// steepest point of that interval.
     template <int q>
     MYRIAD_FUNCTION turn turn_between(const step_type& step, const mask& lanes, const dual<S>& first,
-                                      const dual<S>& last) const {
+                                      const dual<S>& last, int thread) const {
         const S rise = last.value - first.value;
         const S a = S(R(3)) * rise - S(R(2)) * first.derivative - last.derivative;  // slope d + 2 a theta + 3 b theta^2
         const S b = first.derivative + last.derivative - S(R(2)) * rise;
@@ -269,7 +311,7 @@ private:
                       (slope * last.derivative <= S(R(0)));
         found.theta = select(found.there, theta, S(R(0.5)));
         found.slope = S(R(0));
-        if (any(found.there)) found.slope = look_at(step, found.theta)[q].derivative;
+        if (any(found.there)) found.slope = slope_at<q>(step, found.theta, thread);
         return found;
     }
 
@@ -277,7 +319,7 @@ private:
     /// on the interpolant changes sign there.
     template <int q>
     MYRIAD_FUNCTION void find_extremum(const step_type& step, R sign, const mask& lanes, const dual<S>& first,
-                                       const dual<S>& last, const turn& middle) {
+                                       const dual<S>& last, const turn& middle, int thread) {
         const S zero = S(R(0)), d0 = S(sign) * first.derivative, d1 = S(sign) * last.derivative,
                 d = S(sign) * middle.slope;
         const mask early = middle.there & (d0 > zero) & (d < zero), late = middle.there & (d > zero) & (d1 < zero);
@@ -289,11 +331,13 @@ private:
         if (!any(wanted)) return;
         const S small = S(R(1024) * epsilon_of<R>) * (b.f_low - b.f_high);
         const S theta = detail::find_root(b, wanted, [&](const S& x, mask& close) MYRIAD_LAMBDA {
-            const S slope = S(sign) * look_at(step, x)[q].derivative;
+            const S slope = S(sign) * slope_at<q>(step, x, thread);
             close = abs(slope) <= small;
             return slope;
         });
-        consider<q>(wanted, look_at(step, theta), fma(theta, step.data.h, step.data.t));
+        const slopes there = look_at(step, theta);
+        if (team_for<Model>::number_of_thread() == thread)
+            consider<q>(wanted, there, fma(theta, step.data.h, step.data.t));
     }
 
     /// Five-point Lobatto rule, exact for polynomials up to degree seven: Abramowitz and Stegun, Handbook of
@@ -314,7 +358,8 @@ private:
         static_for<0, m>([&](auto j) MYRIAD_LAMBDA {
             constexpr int q = decltype(j)::value;
             if constexpr (extreme<q, over_phase::integral>) {
-                S& integral = s.data.accessory[summarised_into<Model, q, over_phase::integral>];
+                if (!keeps<q>()) return;
+                S& integral = receiver<summarised_into<Model, q, over_phase::integral>>();
                 integral = select(lanes, fma(step.data.h, sum[q], integral), integral);
                 each_companion<q, over_phase::integral>([&](auto c, S& kept) MYRIAD_LAMBDA {
                     kept = select(lanes, fma(step.data.h, sum[decltype(c)::value], kept), kept);

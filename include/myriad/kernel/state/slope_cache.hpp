@@ -7,7 +7,7 @@
 #include "myriad/kernel/model/hooks.hpp"
 #include "myriad/kernel/model/summaries.hpp"
 #include "myriad/kernel/scalar/lanes.hpp"
-#include "myriad/kernel/stepper/step.hpp"
+#include "myriad/kernel/stepper/dense_output.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
@@ -23,8 +23,10 @@ public:
     using state = vec<S, n>;
     using data = lane_data<Model, S>;
 
-    /// Samples and summaries may need the slope at the end of a step, which is then the first of the next.
-    static constexpr bool knows_end = samples_trajectory<Method> || has_summaries<Model>;
+    /// Interpolants of samples and summaries may use the slope at the end of a step, which is then the first of the
+    /// next.
+    static constexpr bool knows_end =
+        (samples_trajectory<Method> || has_summaries<Model>)&&interpolates_with_slope_end<Method>;
     /// Slopes are kept if the last of a step is the first of the next. Else every trial evaluates its own, a repeated
     /// one too: in a pack or a warp another lane needs it anyway.
     static constexpr bool keeps_start = Method::first_same_as_last || knows_end;

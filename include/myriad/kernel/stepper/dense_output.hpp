@@ -116,7 +116,9 @@ MYRIAD_FUNCTION vec<T, n> interpolate(const step_data<Method, S, n>& step, const
     using R = real_of<S>;
     vec<T, n> out;
     if constexpr (rosenbrock_method<Method>) {
-        out = detail::rosenbrock_interpolation<Method>(step.y, step.trial, theta);
+        matrix_loop<S, n>::all([&](auto c) MYRIAD_LAMBDA {
+            out[c] = detail::rosenbrock_interpolation<Method>(step.y, step.trial, theta, c);
+        });
     } else if constexpr (has_own_interpolant<Method>) {
         constexpr int degree = Method::interpolant_degree, stages = interpolant_stages<Method>;
         vec<T, stages> weight;

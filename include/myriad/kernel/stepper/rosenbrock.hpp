@@ -23,9 +23,11 @@ concept rosenbrock_method = requires {
 
 /// Components up to which device code writes out the loops over a state. Beside factors that are written out, a loop
 /// keeps a copy of every vector in local memory: a ring of 64 states took 14.1 kB a thread
-/// and 119 ms for 1000 instances, and written out 9.4 kB and 87 ms (NVIDIA H200, rodas_5p).
+/// and 119 ms for 1000 instances, and written out 9.4 kB and 87 ms (NVIDIA H200, rodas_5p). Explicit steps of about 60
+/// states become too large for nvcc then, which leaves them all in local memory: 65 536 of Lorenz 96 with 64 states, by
+/// dormand_prince_5, took 62 ms written out and 16 as loops, with 48 states 4.8 and 8.4 (NVIDIA H100).
 template <class Method>
-inline constexpr int most_components_written_out = rosenbrock_method<Method> ? 128 : 64;
+inline constexpr int most_components_written_out = rosenbrock_method<Method> ? 128 : 54;
 
 /// The results of a trial step: the slope at its start (and at its end, if the last stage computes it), the stages u,
 /// the new state, and the lanes whose matrix was singular, where everything else is invalid.
@@ -312,23 +314,20 @@ MYRIAD_FUNCTION void rosenbrock_step(const S& t, const S& h, const S& t1, const 
     advance(constant_index<Method::stages>{});
 }
 
-/// State at t + theta h, 0 <= theta <= 1; for a dual theta, with its derivative. `trial` has the stages u and the new
-/// state y.
+/// One component of the state at t + theta h, 0 <= theta <= 1; for a dual theta, with its derivative. `trial` has the
+/// stages u and the new state y.
 template <rosenbrock_method Method, class S, int n, class Trial, class T>
-MYRIAD_FUNCTION vec<T, n> rosenbrock_interpolation(const vec<S, n>& y, const Trial& trial, const T& theta) {
+MYRIAD_FUNCTION T rosenbrock_interpolation(const vec<S, n>& y, const Trial& trial, const T& theta, int component) {
     using R = real_of<S>;
+    constexpr int last = dense_terms<Method> - 1;
     const T rest = S(R(1)) - theta;
-    vec<T, n> out;
-    matrix_loop<S, n>::all([&](auto c) MYRIAD_LAMBDA {
-        constexpr int last = dense_terms<Method> - 1;
-        T bend = detail::sum_stages<Method, rosenbrock_row::dense, last, Method::stages>(trial.u, c);
-        static_for<0, last>([&](auto r) MYRIAD_LAMBDA {
-            constexpr int term = last - 1 - decltype(r)::value;
-            bend = detail::add_stages<Method, rosenbrock_row::dense, term, 0, Method::stages>(theta * bend, trial.u, c);
-        });
-        out[c] = fma(theta, fma(rest, bend, trial.y[c] - y[c]), y[c]);
+    T bend = detail::sum_stages<Method, rosenbrock_row::dense, last, Method::stages>(trial.u, component);
+    static_for<0, last>([&](auto r) MYRIAD_LAMBDA {
+        constexpr int term = last - 1 - decltype(r)::value;
+        bend = detail::add_stages<Method, rosenbrock_row::dense, term, 0, Method::stages>(theta * bend, trial.u,
+                                                                                          component);
     });
-    return out;
+    return fma(theta, fma(rest, bend, trial.y[component] - y[component]), y[component]);
 }
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET

@@ -318,5 +318,30 @@ template <class Model, class S>
 MYRIAD_FUNCTION void solve_factorised(const sparse_lu_factors<Model, S>& lu, vec<S, n_state<Model>>& b) {
     solve_factorised<Model>(lu.a, b);
 }
+/// Solves A^T x = b with the factors of A; x replaces b.
+template <class Model, class S>
+MYRIAD_LARGE_FUNCTION void solve_transposed(const sparse_lu_factors<Model, S>& lu, vec<S, n_state<Model>>& b) {
+    using lu_type = sparse_lu_factors<Model, S>;
+    using tables = typename lu_type::tables;
+    using loop = typename lu_type::loop;
+    loop::template range<0, n_state<Model>>([&](auto s) MYRIAD_LAMBDA {
+        const auto row = lu_type::template at<&tables::pivot>(s);
+        const S x = b[row] * lu.a[lu_type::template at<&tables::diagonal>(row)];
+        lu_type::template of_step<&tables::upper_begin>(s, [&](auto u) MYRIAD_LAMBDA {
+            const auto column = lu_type::template at<&tables::upper_column>(u);
+            b[column] = fma(-lu.a[lu_type::template at<&tables::upper_entry>(u)], x, b[column]);
+        });
+        b[row] = x;
+    });
+    loop::template range_backwards<0, n_state<Model>>([&](auto s) MYRIAD_LAMBDA {
+        const auto row = lu_type::template at<&tables::pivot>(s);
+        S x = b[row];
+        lu_type::template of_step<&tables::lower_begin>(s, [&](auto l) MYRIAD_LAMBDA {
+            x = fma(-lu.a[lu_type::template at<&tables::lower_entry>(l)],
+                    b[lu_type::template at<&tables::lower_row>(l)], x);
+        });
+        b[row] = x;
+    });
+}
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET

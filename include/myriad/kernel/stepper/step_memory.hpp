@@ -59,9 +59,13 @@ struct step_memory : stage_memory<Method, Model, R> {
 template <class Memory>
 inline constexpr int step_memory_stride =
     static_cast<int>(((sizeof(Memory) + bytes_loaded_at_once - 1) / bytes_loaded_at_once | 1) * bytes_loaded_at_once);
-/// Largest such stride. 1000 rings of 64 states, NVIDIA H100: 63 ms with all 7.5 kB of a thread there, 34 with the
-/// stages alone, 4.6 kB, and 55 without.
-inline constexpr int largest_step_memory_stride = 4800;
+/// Largest such stride, of which a warp's 32 threads have room in the 227 kB of a multiprocessor. NVIDIA H100: 10 000
+/// instances of EARM, 77 states, 524 ms without, 424 with the stages, 5.5 kB; 65 536 of Lorenz 96 with 80 and 96 states
+/// by dormand_prince_5 47 and 54 ms without, 19 and 32 with 5.2 and 6.2 kB.
+inline constexpr int largest_step_memory_stride = 7200;
+/// The same for stages and factors together, which leave the rest too little cache. NVIDIA H100: 1000 rings of 64
+/// states 40 ms with all 7.1 kB of a thread there, 34 with the stages alone, 4.6 kB, and 55 without.
+inline constexpr int largest_stride_with_factors = 4800;
 
 /// Largest trial step of an explicit method that is left to registers, and what of it they do not hold to local memory.
 /// Lorenz 96, dormand_prince_5 at 1e-6, 131 072 instances, NVIDIA H100, ms in registers and in shared memory, for 16
@@ -77,7 +81,7 @@ constexpr int shared_step_bytes_of() {
             constexpr int all = step_memory_stride<step_memory<Method, Model, R>>;
             constexpr int stages = step_memory_stride<stage_memory<Method, Model, R>>;
             if (in_registers <= register_bytes) return 0;
-            if (all <= largest_step_memory_stride) return all;
+            if (all <= largest_stride_with_factors) return all;
             if (stages <= largest_step_memory_stride) return stages;
         }
     } else if constexpr (Method::embedded_order > 0 && team_size<Model> == 1) {

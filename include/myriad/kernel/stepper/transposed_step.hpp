@@ -16,7 +16,6 @@
 #include "myriad/kernel/model/jacobian.hpp"
 #include "myriad/kernel/stepper/dense_output.hpp"
 #include "myriad/kernel/stepper/explicit_rk.hpp"
-#include "myriad/kernel/stepper/lu.hpp"
 #include "myriad/kernel/stepper/rosenbrock.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
@@ -188,8 +187,8 @@ private:
     }
 };
 
-/// A step of a Rosenbrock method, whose stages are those of rosenbrock_tableau.hpp. Its matrix, which has derivatives
-/// of its own, is factorised as a dense one.
+/// A step of a Rosenbrock method, whose stages are those of rosenbrock_tableau.hpp. Its matrix has derivatives of its
+/// own.
 template <class Adjoint, rosenbrock_method Method, class S>
 class transposed_step<Adjoint, Method, S> {
     using R = real_of<S>;
@@ -253,7 +252,7 @@ public:
 
 private:
     S t_, h_, per_h_;
-    lu_factors<S, n> lu_;
+    stage_factors<Adjoint, S> lu_;
     vec<vec<S, n>, stages> argument_, u_, v_, by_argument_, inside_;
 
     static MYRIAD_FUNCTION R weight(int of, int j) { return static_cast<R>(table.weight(of, j)); }
