@@ -12,7 +12,7 @@ here = pathlib.Path(__file__).parent
 import myriad as my  # noqa: E402
 
 model = my.read_sbml(here / "doses.xml")
-one = my.solve(model, {"clearance": [3, 5, 8]}, time=(0, 72), samples=500, maximum_step=1)
+one = my.solve(model, {"clearance": [3, 5, 8]}, time=(0, 72), samples=500)
 one.plot.time_series("drug")  # with the file's units: t (h), drug (mg/l)
 plt.savefig("doses_three.png")
 # end of snippet
@@ -20,7 +20,7 @@ plt.savefig("doses_three.png")
 # snippet: map
 plt.figure()
 sweep = my.grid(dose=np.linspace(20, 200, 60), interval=np.linspace(4, 24, 41))
-run = my.solve(model, sweep, time=(0, 240), samples=np.linspace(192, 240, 200), maximum_step=1)
+run = my.solve(model, sweep, time=(0, 240), samples=np.linspace(192, 240, 200))
 table = run.to_xarray()  # with the axes dose and interval
 last_days = table["drug"]
 safe = (last_days.max("sample") < 4) & (last_days.min("sample") > 0.5)
@@ -31,7 +31,7 @@ plt.savefig("doses.png")
 # snippet: bands
 body = {"clearance": my.normal(5, 1), "body": my.normal(40, 6), "absorption": my.uniform(0.4, 1.2)}
 times = np.linspace(0, 72, 145)
-patients = my.study(model, body, draws=20_000, seed=1, time=(0, 72), samples=times, maximum_step=1,
+patients = my.study(model, body, draws=20_000, seed=1, time=(0, 72), samples=times,
                     keep=dict(end=[], samples=False, random=False),
                     reduce=[my.reduce.mean("drug_sample"),
                             my.reduce.quantiles("drug_sample", [0.05, 0.5, 0.95], my.linspace(0, 8, 401))])

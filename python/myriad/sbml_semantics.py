@@ -168,11 +168,12 @@ class Semantics:
 
     # -- What is stored ------------------------------------------------------------------------------------------------
 
-    def component_name(self, wanted: str) -> str:
-        """A name that a component of a model can have, like that one, and none has yet."""
+    def component_name(self, wanted: str, of: str = "") -> str:
+        """A name that a component of a model can have, like that one. No component has it yet, and it is no id of the
+        file, but for that of what it is the name `of`."""
         name = re.sub("_+", "_", re.sub("[^A-Za-z0-9_]", "_", wanted)).strip("_") or "unnamed"
         name = name if name[0].isalpha() else f"x_{name}"
-        return sym.free_name(name, self.names.values())
+        return sym.free_name(name, {*self.names.values(), *({*self.quantities, *self.reactions} - {of})})
 
     def new_name(self, wanted: str) -> str:
         """Such a name, of something that is no element of the file."""
@@ -190,7 +191,7 @@ class Semantics:
         for quantity in sorted(self.quantities.values(), key=lambda q: q.kind == "species"):
             if quantity.changes != "assignment":
                 self.names[quantity.id] = self.component_name(
-                    f"{quantity.id}_amount" if quantity.in_amount else quantity.id)
+                    f"{quantity.id}_amount" if quantity.in_amount else quantity.id, quantity.id)
         for quantity in self.quantities.values():
             self.stored(quantity)
         for quantity in self.quantities.values():

@@ -338,8 +338,9 @@ class XppModel(Model):
     def __init__(self, file: _File, name: str) -> None:
         parts = file.parts
         self._taken: dict[str, str] = {}
-        states = {n: sym.symbol("state", self._component(n)) for n in parts.equations}
-        parameters = {n: sym.symbol("parameter", self._component(n)) for n in parts.parameters}
+        self._ids = {*parts.equations, *parts.parameters, *parts.derived, *parts.quantities, *parts.outputs}
+        states = {n: sym.symbol("state", self._component(n, n)) for n in parts.equations}
+        parameters = {n: sym.symbol("parameter", self._component(n, n)) for n in parts.parameters}
         names = Names()
         names.series = [list(states), list(parts.quantities)]
         names.values = {"t": sym.time, "pi": constant(np.pi), **{n: constant(v) for n, v in parts.numbers.items()},
@@ -383,11 +384,12 @@ class XppModel(Model):
         self.sets = {given: {components[n]: v for n, v in values.items() if n in components}
                      for given, values in file.sets.items()}
 
-    def _component(self, wanted: str) -> str:
-        """A name that a component of a model can have, like that one."""
+    def _component(self, wanted: str, of: str = "") -> str:
+        """A name that a component of a model can have, like that one, and that nothing in the file has but what it is
+        the name `of`."""
         name = re.sub("_+", "_", wanted).rstrip("_") or "x"
         name = name if name[0].isalpha() else f"x{name}"
-        free = sym.free_name(name, self._taken)
+        free = sym.free_name(name, {*self._taken, *(self._ids - {of})})
         self._taken[free] = wanted
         return free
 

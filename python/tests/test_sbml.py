@@ -469,6 +469,15 @@ def test_a_file_without_an_encoding_is_read_and_checked():
         my.read_sbml(text.replace('variable="total"', 'variable="what"'))
 
 
+def test_ids_that_differ_in_underscores_are_not_mixed_up():
+    model = my.read_sbml(sbml_models.document([
+        parameter("k__", 1), parameter("k", 2), parameter("_k", 3), variable("x", 0), variable("next_jump", 4),
+        rate("x", "piecewise(k + 10 * k__ + 100 * _k, time > 1, 0)"), rate("next_jump", "1")]))
+    run = my.solve(model, {"k__": [1, 5]}, time=(0, 2), interpreted=True)
+    for name, values in (("k__", [1, 5]), ("k", [2, 2]), ("_k", [3, 3]), ("x", [312, 352]), ("next_jump", [6, 6])):
+        np.testing.assert_allclose(run[name], values, rtol=1e-9, err_msg=name)
+
+
 def switched(given, *parts):
     """dA/dt = E - k A, A = 1 at the start, with an input E."""
     return my.read_sbml(sbml_models.document([

@@ -228,3 +228,9 @@ def test_a_function_of_t_is_no_integral_equation():
 def test_shift_is_known_of_quantities():
     run = solved("q[0..2]=[j]*t\nx'=sum(0,2)of(shift(q0,i'))\n")
     np.testing.assert_allclose(run["x"][0, -1], 3 * 2**2 / 2, rtol=1e-9)
+
+
+def test_names_that_differ_in_underscores_are_not_mixed_up():
+    run = solved("p k_=1,k=2\nx_'=k_\nx'=k\naux next_jump=heav(t-1)\ny'=heav(t-1)\n", {"k_": 5}, samples=None)
+    for name, value in (("k_", 5), ("k", 2), ("x_", 10), ("x", 4), ("next_jump", 1), ("y", 1)):
+        np.testing.assert_allclose(run[name], value, rtol=1e-9, err_msg=name)
