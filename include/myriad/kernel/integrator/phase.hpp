@@ -184,8 +184,8 @@ private:
             }
         }
         if constexpr (moves_time_domain<Model>) {
-            set_lane(s.data.accessory[Model::places::carries_on], i, carry_on ? R(1) : R(0));
-            set_lane(s.data.accessory[Model::places::goes_to_t_end], i,
+            set_lane(s.data.accessory[phase_marks_of<Model>::carries_on], i, carry_on ? R(1) : R(0));
+            set_lane(s.data.accessory[phase_marks_of<Model>::goes_to_t_end], i,
                      get_lane(s.data.t_end, i) == t_end_of_all ? R(1) : R(0));
         }
         set_lane(s.data.phase, i, phase);

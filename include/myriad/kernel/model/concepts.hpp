@@ -123,9 +123,12 @@ MYRIAD_MODEL_DECLARATION(autonomous)
 /// The model has derivatives by the ends of its time domain, for which phases tell where they begin and end.
 template <class Model>
 inline constexpr bool moves_time_domain = false;
-template <class Model>
-requires requires { Model::directions::move_time_domain; }
-inline constexpr bool moves_time_domain<Model> = Model::directions::move_time_domain;
+template <class Varied>
+requires requires { Varied::directions::move_time_domain; }
+inline constexpr bool moves_time_domain<Varied> = Varied::directions::move_time_domain;
+/// The accessories that tell them so.
+template <class Varied>
+using phase_marks_of = typename Varied::places;
 
 // Whether a model has a member of that name, whatever its signature: a class that inherits the name twice finds it
 // ambiguous. This also finds templates and overloads, which a test of the signature would miss, so that a hook with a

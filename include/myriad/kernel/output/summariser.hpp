@@ -347,7 +347,10 @@ private:
         constexpr R near = static_cast<R>(0.17267316464601142810L);  // (1 - sqrt(3 / 7)) / 2
         values sum;
         MYRIAD_UNROLL
-        for (int q = 0; q < m; ++q) sum[q] = S(R(1) / R(20)) * (first[q].value + last[q].value);
+        for (int q = 0; q < m; ++q) {  // not their sum, in which nvcc would fuse one product or the other
+            const S weight = S(R(1) / R(20));
+            sum[q] = fma(weight, last[q].value, weight * first[q].value);
+        }
         for (int k = 0; k < 3; ++k) {
             const R theta = k == 0 ? near : (k == 1 ? R(0.5) : R(1) - near);
             const S weight = S(k == 1 ? R(16) / R(45) : R(49) / R(180));
