@@ -21,6 +21,11 @@ import subprocess
 import sys
 import threading
 
+_upper_solve = """<0, n_state<Model>>([&](auto s) MYRIAD_LAMBDA {
+        const auto row = lu_type::template at<&tables::pivot>(s);
+        S x = b[row];
+        lu_type::template of_step<&tables::upper_begin>("""
+
 # name: (header, text, replacement, the problem that shows it). The text must occur exactly once.
 MUTATIONS = {
     "swapped_direction": ("kernel/event/lane_sides.hpp",
@@ -59,8 +64,7 @@ MUTATIONS = {
     "entry_left_out_of_the_pattern": ("kernel/scalar/dependence.hpp", "both.on[w] = a.on[w] | b.on[w];",
                                       "both.on[w] = a.on[w] ^ b.on[w];", "hires"),
     "factors_solved_in_another_order": ("kernel/stepper/sparse_lu.hpp",
-                                        "loop::template range_backwards<0, n_state<Model>>(",
-                                        "loop::template range<0, n_state<Model>>(", "hires"),
+                                        "range_backwards" + _upper_solve, "range" + _upper_solve, "hires"),
 }
 DEFAULT = ["swapped_direction", "lost_action", "stale_slope", "rejected_step_accepted",
            "entry_left_out_of_the_pattern", "factors_solved_in_another_order"]
