@@ -23,7 +23,7 @@ installed.
 Options:
   --required  exit status 1 instead of 77
   --others    also tests of work with other packages (JAX, Dask, SALib and more), whose download takes minutes
-  --full      an argument of pytest: also tests that take long, as all of what is around a kernel on simulated GPUs
+  --full      an argument of pytest: also tests that are marked as long
   --all       an argument of pytest: all models for all GPUs by NVRTC, which takes minutes
   --help      this text
 END

@@ -22,8 +22,8 @@ Steps that run without options: what shows that a build is right.
   python    the Python package: its wheel is built, installed in a fresh virtual environment, and tested (skipped where
             the packages of PyPI that it is built with cannot be installed)
 
-With --full, python has all its tests, those of work with other packages too, JAX and Dask among them, and there are
-these steps. All run in the order ci, programs, python, and then as they stand here.
+With --full, python runs all its tests, also those that take long and those with other packages, JAX and Dask among
+them, and there are these steps. All run in the order ci, programs, python, and then as they stand here.
   programs  in the build of ci: examples, benchmarks, validation, projects outside that use the library, every public
             header by itself, compile times
   docs      the documentation as a site: warnings are errors, links within it lead somewhere (skipped where Sphinx

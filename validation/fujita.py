@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """The likelihood of problem Fujita_SciSignal2010 of PEtab's benchmark collection at its nominal values, by SciPy from
-equations written by hand, and that of the collection's own simulation, which is of other values: docs/fits.md.
+equations written by hand, and of the collection's own simulation, which is of other values: docs/fits.md.
 
-Usage: fujita.py FOLDER, that of the problem in the collection"""
+Usage: fujita.py FOLDER, the problem's folder in the collection"""
 
 import csv
 import math

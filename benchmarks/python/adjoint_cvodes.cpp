@@ -35,8 +35,7 @@ void check(int flag, const char* what) {
     if (flag < 0) throw std::runtime_error(std::string(what) + " failed with " + std::to_string(flag));
 }
 
-/// What a solution or an adjoint solution is integrated by: BDF and Newton's method, or Adams methods and a fixed
-/// point.
+/// The solvers of a solution or an adjoint solution: Newton's method for BDF, fixed-point iteration for Adams methods.
 class solver {
 public:
     solver(SUNContext context, N_Vector y)

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Gradients by the adjoint beside those of SUNDIALS CVODES' adjoint, which integrates the adjoint equations backwards:
-errors against CVODES' forward sensitivities at 1e-12, in parts of the largest derivative by the logarithm of a
-parameter, and microseconds of processor time per instance, on one core. The loss is the sum of the squares of all
-states, each over its typical size, at ten times. Prints the table of docs/gradients.md. The equations are written once,
-here; what CVODES needs of derivatives SymPy makes from them, as C++. Needs SymPy, a C++ compiler and SUNDIALS
-(libsundials-dev).
+"""Gradients by the adjoint beside those of SUNDIALS CVODES' adjoint, which integrates the adjoint equations backwards.
+The loss is the sum of the squares of all states, each over its typical size, at ten times. Prints the table of
+docs/gradients.md: errors relative to the largest derivative by the logarithm of a parameter, with CVODES' forward
+sensitivities at 1e-12 as the reference, and microseconds of processor time per instance, on one core. The equations are
+written once, here; SymPy makes the derivatives that CVODES needs from them, as C++. Needs SymPy, a C++ compiler and
+SUNDIALS (libsundials-dev).
 
 Usage: adjoint_cvodes.py [--instances N] [--calls N] [--tolerance NUMBER] [--problems NAME...]
 Exit status 1 if an error is beyond a thousand times the tolerance."""
@@ -88,7 +88,7 @@ products = create_expand_pow_optimization(4)  # in the place of powers
 
 
 def code(name, arguments, outputs):
-    """A C++ function that assigns to the arrays it gets, those of them that are not null."""
+    """A C++ function that fills those of its output arrays that are not null."""
     lines = []
     for target, values in outputs.items():
         shared, left = sympy.cse(list(values), sympy.numbered_symbols("s"))
@@ -160,8 +160,8 @@ def main():
     parser.add_argument("--problems", nargs="+", choices=problems, default=list(problems))
     options = parser.parse_args()
     right = True
-    print("| problem | states | parameters | error | of CVODES | loss | gradient | CVODES' loss | its gradient |\n"
-          "|---|---|---|---|---|---|---|---|---|")
+    print("| problem | states | parameters | error | CVODES' error | loss | gradient | CVODES' loss | "
+          "CVODES' gradient |\n|---|---|---|---|---|---|---|---|---|")
     for name in options.problems:
         equations, start, values, times, stiff = problem = problems[name]
         states = my.states([f"y{i}" for i in range(len(start))])

@@ -31,9 +31,9 @@ if TYPE_CHECKING:
     from .hints import AnyModel, Array
     from .run import Run
 
-# Of the records of instances that are integrated at a time, if there are several. Per thread of a CPU about what its
-# part of the caches holds: with 64 MiB a gradient for 20 reactions took a tenth to a fifth more. On a GPU what gives
-# all its threads work.
+# Most bytes of records of a group of instances that are integrated at a time; a single instance may have more. On a
+# CPU, for each thread, about what its part of the caches holds: with 64 MiB a gradient for 20 reactions took a tenth to
+# a fifth more. On a GPU what gives all its threads work.
 _most_bytes, _most_bytes_on_gpu = 1 << 23, 1 << 30
 _cure = "leave out adjoint=True, for forward sensitivities"
 

@@ -86,8 +86,8 @@ def generic_problem(roots: Iterable[Node]) -> Node | None:
 
 
 class Names:
-    """The names that a model's functions use for their arguments: the usual ones unless a component, or something of
-    the names in `others`, has that name."""
+    """The names that a model's functions use for their arguments: the usual ones unless a component has that name, or
+    it is among `others`."""
 
     def __init__(self, model: Model, others: Iterable[str] = ()) -> None:
         self.taken = {*model.component_names, *others, "i", "j", "r"}
@@ -207,7 +207,7 @@ class Body:
         self.lines.append(f"myriad::vec<{kind}, {last - first + 1}> {product};")
         row_number, rows = f"({first} + i)" if first else "i", f"for (int i = 0; i < {last - first + 1}; ++i)"
         entry = f"{self.shared}[{table.name}"
-        if of_units and table.form == "full":  # four neighbouring rows at once, of which additions need not wait
+        if of_units and table.form == "full":  # four rows at once, whose additions need not wait for each other
             first, number, each = 0, self._name("row"), "for (int r = 0; r < 4; ++r)"
             self.lines[-1] = f"myriad::vec<{kind}, {n}> {product};"
             self.lines += [f"for (int i = 0; i < {n}; i += 4) {{",

@@ -230,7 +230,7 @@ def prepare(header: str, struct: str, method: str, real: str, shared: tuple[int,
 
 
 def single_kernel(source: str, name: str, device: int) -> _core.GpuKernel:
-    """The kernel of that name in a file that is compiled for a GPU by its number."""
+    """Compiles a file for the GPU of that number, and returns its kernel of that name."""
     _, capability, _ = _core.gpu(device)
     found: _core.GpuKernel = _cached(source, capability, lambda program: _core.GpuKernel(program, name, device)).loaded
     return found

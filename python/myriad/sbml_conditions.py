@@ -55,7 +55,8 @@ def complements(comparison: Any) -> list[Any]:
 
 
 def comparisons_alone(condition: Any, where: str, is_still: Callable[[Any], bool], as_it_is: bool = True) -> Any:
-    """A condition of comparisons, `and` and `or`, without `not`. One by != that fails for an instant is refused."""
+    """A condition of comparisons, `and` and `or`, without `not`. A comparison by != that fails for an instant alone is
+    refused."""
     if condition.op == "truth":
         return condition if as_it_is else opposite(condition)
     if condition.op == "not":

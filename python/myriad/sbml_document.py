@@ -10,7 +10,7 @@ from .errors import Error
 from .sbml_math import Refused
 
 
-_harmless = 1002, 10313  # the numbers of libsbml's errors that no encoding is named, and of a unit that is not there
+_harmless = 1002, 10313  # libsbml's numbers of two errors: no encoding is named; a unit is not there
 
 
 def library() -> Any:
@@ -64,7 +64,7 @@ def _check(libsbml: Any, document: Any) -> None:
 
 def _errors(libsbml: Any, document: Any) -> list[Any]:
     for number in _harmless:
-        document.getErrorLog().removeAll(number)  # which libsbml would stop at
+        document.getErrorLog().removeAll(number)  # else libsbml stops there
     errors = [document.getError(i) for i in range(document.getNumErrors())]
     return [e for e in errors if e.getSeverity() in (libsbml.LIBSBML_SEV_ERROR, libsbml.LIBSBML_SEV_FATAL)]
 

@@ -110,7 +110,7 @@ class Instant:
     def __init__(self, events: Events, values: dict[Any, Any], at_start: bool = False) -> None:
         self.events, self.values = events, dict(values)
         self.truth: dict[Occurrence, Any] = {}
-        # comparisons that begin to hold or to fail, though rounding may leave them short of it
+        # comparisons that begin to hold (true) or to fail (false) here, though rounding may leave them short of it
         self.located: dict[Any, Any] = {}
         self.pending: list[Pending] = []
         self.executed: list[tuple[Occurrence, Any]] = []
@@ -137,8 +137,8 @@ class Instant:
         self.is_open = either(self.is_open, both(self.given, condition))
 
     def about_to_hold(self, one: Occurrence, holds: Any, changed: Any = true) -> Any:
-        """Whether a trigger, where something has `changed` it, does not hold, but does right afterwards, as x > 0 where
-        x is zero and rises: no crossing shows it. It is open where the rate is zero too."""
+        """Whether a trigger does not hold, but does right afterwards, as x > 0 where x is zero and rises: no crossing
+        shows it. That is asked where something has `changed` the trigger, and is open where the rate is zero too."""
         if not any(c.op in ("less", "greater") and not self.events.is_still(c) for c in comparisons_of(one.trigger)):
             return false
         function = function_of(one.trigger, self.events.is_still)

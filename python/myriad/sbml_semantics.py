@@ -169,14 +169,14 @@ class Semantics:
     # -- What is stored ------------------------------------------------------------------------------------------------
 
     def component_name(self, wanted: str, of: str = "") -> str:
-        """A name that a component of a model can have, like that one. No component has it yet, and it is no id of the
-        file, but for that of what it is the name `of`."""
+        """A name like the wanted one that a component of a model can have. No component has it yet, and it is no id of
+        the file, except the id `of` what is named."""
         name = re.sub("_+", "_", re.sub("[^A-Za-z0-9_]", "_", wanted)).strip("_") or "unnamed"
         name = name if name[0].isalpha() else f"x_{name}"
         return sym.free_name(name, {*self.names.values(), *({*self.quantities, *self.reactions} - {of})})
 
     def new_name(self, wanted: str) -> str:
-        """Such a name, of something that is no element of the file."""
+        """Such a name for something that is no element of the file."""
         name = self.component_name(wanted)
         self.names[f"made {name}"] = name
         return name

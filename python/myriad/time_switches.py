@@ -2,8 +2,8 @@
 """Jumps of equations at times that are known beforehand: comparisons that time and constants alone decide, and whole
 parts and remainders of time.
 
-Steps end at the next of these times, so that no step passes over what happens between two of them. From one to the next
-everything that jumps has its value in the middle between them.
+Steps end at each of these times, so that no step passes over what happens between two of them. Between two of them
+everything that jumps keeps the value that it has halfway.
 """
 
 from __future__ import annotations
@@ -49,12 +49,12 @@ def note(model: Any, options: Options) -> str | None:
 
 
 class TimeSwitches:
-    """`equations` by state as they are between jumps, the `stops` at these, what `initialise` sets, and jumps whose
-    times are `unknown`, as they have no formula: these stay as they are.
+    """What makes jumps exact: `equations`, by state, as they are between jumps; `stops` at the jumps; what `initialise`
+    sets. Jumps whose times have no formula are `unknown`, and stay as they are.
 
-    States that change at events alone may decide too: the actions of `events` find the next jump anew. Where functions
-    of events jump or come back, steps also end between jumps, where their signs are seen. `free_name` makes names of
-    components."""
+    Jumps may also depend on states that change at events alone: the actions of `events` then find the next jump anew.
+    If functions of events jump or come back, steps also end halfway between jumps, where the signs of these functions
+    are seen. `free_name` makes names of components."""
 
     def __init__(self, equations: dict[Any, Any], events: Iterable[Event], initialise: dict[Any, Any],
                  free_name: Callable[[str], str]) -> None:
@@ -137,12 +137,12 @@ class TimeSwitches:
         inside = self._at(node, middle)
         if node.op != "fmod":
             return inside
-        return subtract(node.args[0], subtract(self._at(node.args[0], middle), inside))  # less what is whole
+        return subtract(node.args[0], subtract(self._at(node.args[0], middle), inside))  # less whole multiples
 
     # -- When it jumps -------------------------------------------------------------------------------------------------
 
     def _times_of(self, node: Any) -> list[Any] | None:
-        """Some times, among which are the next ones of jumps before and after now; None if they have no formula."""
+        """Some times, among them the last jump before now and the next one; None if they have no formula."""
         if node not in self._times:
             self._times[node] = self._found_times_of(node)
         return self._times[node]

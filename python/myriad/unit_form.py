@@ -78,7 +78,7 @@ class UnitForm(Writer):
         self.published = {what: i for i, what in enumerate(dict.fromkeys(what for _, what in in_order))}
 
     def _read_hooks(self) -> None:
-        """The assignments of hooks and stops, of the system and of each unit; of events, of the unit of the event."""
+        """What hooks and stops assign, to the system and to each unit, and what events do, seen from their unit."""
         model, n = self.model, self.units.count
         self.hooks = {name: self._of_each(getattr(model, name)) for name in ("initialise", "after_step", "finalise")}
         self.at_stops = [self._of_each(stop.do) for stop in model.stops]
@@ -92,8 +92,8 @@ class UnitForm(Writer):
             self.at_events.append(self._without_sums(sorted(done[0].items(), key=lambda one: str(one[0].value))))
 
     def _of_each(self, assignments: Assignments) -> tuple[Assignments, Assignments]:
-        """Assignments of the system and those of each unit. They take effect together in all units, of which C++ calls
-        one after the other: none may read what another one has assigned."""
+        """The assignments of the system and those of each unit. All take effect together, while C++ calls the hook for
+        one unit after the other: so no unit may read what is assigned to another, or to the system."""
         system: Assignments = []
         of_units: dict[tuple[str, str], list[Any]] = {}
         for target, value in assignments:
@@ -119,7 +119,7 @@ class UnitForm(Writer):
 
     @staticmethod
     def _without_sums(assignments: Assignments) -> Assignments:
-        """Assignments that have no sums of couplings, which right-hand sides alone have."""
+        """The assignments, unless they use sums of couplings, which only right-hand sides have."""
         for node in walk([value for _, value in assignments]):
             if node.op == "symbol" and node.value[0] == "sum" or node.op == "dot":
                 raise _NotAlike
@@ -131,7 +131,7 @@ class UnitForm(Writer):
         return int(number) if self.groups.get(base) == kind and number in self._numbers else None
 
     def _alike(self, of_units: Sequence[Node], coupled: bool = True) -> Node:
-        """The expressions of all units as that of one."""
+        """The expressions of all units as that of one, without sums of couplings unless it may be `coupled`."""
         several = [self._shift(root, i) for i, root in enumerate(of_units)]
         if any(one is not several[0] for one in several) or not coupled and any(
                 s.value[0] == "sum" for s in symbols_of(several[:1])):
@@ -329,8 +329,8 @@ class UnitForm(Writer):
         return [*self._distances([node for pair in do for node in pair]), *self.done(do)]
 
     def _statements_of_each(self, system: Assignments, own: Assignments) -> list[str]:
-        """The statements of a hook that is called for one unit after the other: what belongs to the system is done with
-        the first one, before anything is assigned to units."""
+        """The statements of a hook that is called for one unit after the other. What belongs to the system is done in
+        the first call, before anything is assigned to units."""
         lines: list[str] = []
         result = []
         if system:

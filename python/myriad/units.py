@@ -173,8 +173,9 @@ class Units:
 
 
 class CouplingTable(Table):
-    """The matrix of a coupling of `count` units, with the entries that C++'s couplings of that shape have: "full",
-    "banded" or "circulant", with `bandwidth` diagonals on either side of the main one, or all if it is None."""
+    """The matrix of a coupling of `count` units. Its form is "full", "banded" or "circulant", with `bandwidth`
+    diagonals on either side of the main one, or all if it is None. Its elements are the entries of such a coupling in
+    C++, in the same order."""
 
     def __init__(self, name: str, matrix: Any, form: str, bandwidth: int | None) -> None:
         self.form, self.bandwidth, self.count = form, bandwidth, len(matrix)
@@ -192,7 +193,7 @@ class CouplingTable(Table):
         return self.form != "banded" or 0 <= row + diagonal < self.count
 
     def columns(self, row: int) -> list[int]:
-        """The units that the sum of a unit is over, in the order of the sum."""
+        """The units over which the sum of that row goes, in its order."""
         first = 0 if self.form == "full" else row
         return [(first + d) % self.count for d in self._diagonals if self._has(row, d)]
 
@@ -260,7 +261,7 @@ def together(names: Iterable[str], count: int) -> list[str]:
 
 
 def unit_by_unit(names: Iterable[str], count: int) -> list[str]:
-    """The same names, with components that each of so many units has behind the others, one unit after the other."""
+    """The same names in another order: those of the system, then those of each of `count` units, unit by unit."""
     names = list(names)
     those = {f"{base}_{i}" for base in of_units(names, count) for i in range(count)}
     of_each = [name for name in together(names, count) if name in those]

@@ -385,8 +385,8 @@ class XppModel(Model):
                      for given, values in file.sets.items()}
 
     def _component(self, wanted: str, of: str = "") -> str:
-        """A name that a component of a model can have, like that one, and that nothing in the file has but what it is
-        the name `of`."""
+        """A name like the wanted one that a component of a model can have. Nothing in the file has it, except what is
+        named, which the file calls `of`."""
         name = re.sub("_+", "_", wanted).rstrip("_") or "x"
         name = name if name[0].isalpha() else f"x{name}"
         free = sym.free_name(name, {*self._taken, *(self._ids - {of})})

@@ -45,7 +45,8 @@ public:
     ~gpu_memory();
     std::uintptr_t address() const { return reinterpret_cast<std::uintptr_t>(memory_->data()); }
     std::size_t bytes() const { return memory_->bytes(); }
-    /// Copies to so many bytes behind its begin, and from there to the host.
+    /// Copies bytes of the host to the memory, from its byte `to` on, and bytes of the memory, from its byte `from` on,
+    /// to the host.
     void write(std::size_t to, const void* from, std::size_t bytes);
     void read(std::size_t from, void* to, std::size_t bytes) const;
 
@@ -54,12 +55,12 @@ private:
     std::unique_ptr<cuda::device_memory> memory_;
 };
 
-/// A kernel of a program in machine code or PTX. It takes one structure, by value, and has a thread for each of so many
-/// elements, in blocks as large as its launch bounds. Throws `error` if the driver refuses the program.
+/// A kernel of a program in machine code or PTX. It takes one structure, by value, and has a thread for each element,
+/// in blocks as large as its launch bounds. Throws `error` if the driver refuses the program.
 class gpu_kernel {
 public:
     gpu_kernel(const std::string& image, const std::string& name, int device);
-    /// Launches it, and waits for its end.
+    /// Launches it for `size` elements, and waits for its end.
     void run(const std::string& argument, std::int64_t size) const;
 
 private:

@@ -123,8 +123,8 @@ struct inflection {
 };
 using inflection_by_c = myriad::with_sensitivities<inflection, inflection::c>;
 
-/// x' = a t, which at `top` falls back to x / 5 + t / 10; it notes when, the time domain that its hooks see, and the
-/// integral of t x. With `last` falls the phase ends.
+/// x' = a t, which at `top` falls back to x / 5 + t / 10. It notes when it falls, the time domain that its hooks see,
+/// and the integral of t x. Fall number `last` ends the phase.
 struct saw {
     enum state { x, n_state };
     enum parameter { a, top, n_parameter };

@@ -133,7 +133,7 @@ struct watched {
         if (unit == 0) lane.accessory[phases_seen] = lane.phase + 1 + lane.unit_accessory[widest];
     }
 };
-/// The same without extrema, whose steps need no slopes of what is observed.
+/// Charges that flow to the next unit, with an integral and no extrema: steps need no slopes of what is observed.
 struct metered {
     static constexpr bool accessories_are_outputs = true;
     enum unit_state { charge, n_unit_state };

@@ -18,7 +18,8 @@ namespace myriad {
 /// Sets the matrix of coupling `k`, its place among `couplings`, for all instances: row i has the weights of what other
 /// units publish in the sum of unit i, in units of the sum per unit of the publication. Throws `error` if the matrix is
 /// not square with a row for each unit, is not circulant though the coupling is, or has entries that are not finite or
-/// outside the band. A `same_coupling` has the matrix of the earlier one, whichever of them it is set for.
+/// outside the band. A `same_coupling` shares its matrix with the earlier coupling: what is set for either is set for
+/// both.
 template <class Unit, int units, class R, class K>
 void set_coupling(ensemble<coupled_units<Unit, units>, R>& e, K k, const Eigen::MatrixXd& matrix) {
     static_assert(detail::n_coupling<Unit> > 0, "the units have no `couplings`");

@@ -9,14 +9,14 @@
 #include "myriad/kernel/core/macros.hpp"
 
 #if defined(MYRIAD_SIMULATED_TEAM) && !defined(__CUDACC__)
-// Tests run the threads of a block, or of a team alone, one after the other on a CPU, each up to where it waits for the
-// others.
+// Tests run the threads of a block, or of a single team, one after the other on a CPU, each up to where it waits for
+// the others.
 namespace myriad::simulated_team {
-/// Within the block.
+/// The number of the running thread within the block.
 int number_of_thread();
-/// Waits for all threads of the team, which are so many.
+/// Waits for all threads of the team, `threads` in number.
 void synchronise(int threads);
-/// The value that another thread of the team has given in the same call, by its number within the block.
+/// The value that thread `from` of the block, one of the same team, has given in the same call.
 std::uint64_t exchange(std::uint64_t value, int from, int threads);
 /// The memory that the threads share.
 void* memory();
@@ -138,7 +138,7 @@ struct thread_team {
         }
     }
 
-    /// The value of the thread of that number.
+    /// The value that the team's thread of that number has.
     template <class T>
     static MYRIAD_FUNCTION T of_thread(int number, T own) {
         if constexpr (threads > 1) {

@@ -27,7 +27,7 @@ struct coupling {
     coupling_shape shape;          ///< which entries there are
     int bandwidth;                 ///< diagonals with entries on either side of the main one; -1: all
     const char* publication_type;  ///< a mark of the type of the publication, for checks
-    int matrix_of = -1;            ///< number of the coupling whose matrix it has; -1: one of its own
+    int matrix_of = -1;            ///< number of the earlier coupling whose matrix it has; -1: it has its own
 };
 
 /// By a matrix of any entries.
@@ -46,7 +46,7 @@ template <class Publication>
 constexpr coupling circulant_coupling(Publication publication, int bandwidth = -1) {
     return {static_cast<int>(publication), coupling_shape::circulant, bandwidth, &detail::type_mark<Publication>};
 }
-/// By the matrix of an earlier coupling, its place among `couplings`.
+/// By the matrix of an earlier coupling, which is given by its place among `couplings`.
 template <class Publication, class K>
 constexpr coupling same_coupling(Publication publication, K earlier) {
     return {static_cast<int>(publication), coupling_shape::full, -1, &detail::type_mark<Publication>,
@@ -91,7 +91,7 @@ struct coupling_layout {
     MYRIAD_FUNCTION int entry(int row, int k) const { return shape == coupling_shape::circulant ? k : k * units + row; }
     MYRIAD_FUNCTION bool in_matrix(int column) const { return column >= 0 && column < units; }
 };
-/// The number of the coupling whose matrix coupling k has: its own, or an earlier one.
+/// The number of the coupling whose matrix coupling k has: k itself, or an earlier one.
 template <class Unit, int k>
 inline constexpr int coupling_with_matrix = Unit::couplings[k].matrix_of < 0 ? k : Unit::couplings[k].matrix_of;
 /// Without the mark of a type, which device code cannot use.

@@ -73,7 +73,7 @@ struct shared_values {
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// Where inputs lie that a team of threads has in its memory: model/part_of_units.hpp.
+/// For a team of threads, where its inputs lie in its memory: model/part_of_units.hpp. Empty for other models.
 template <class Model>
 struct place_of_inputs {};
 

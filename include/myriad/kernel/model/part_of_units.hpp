@@ -35,7 +35,7 @@ struct team_layout {
     static constexpr int published = integer_accessory + n_integer_accessory<Whole>;
     static constexpr int sum = published + units * n_publication<unit>;
     static constexpr int kept = sum + units * n_coupling<unit>;
-    // Parameters and accessories as they were before a hook, if right-hand sides and events may see that it writes
+    // Parameters and accessories as they were before a hook that may write them, if right-hand sides and events read
     // them.
     static constexpr int inputs = published - parameter;
     static constexpr bool keeps_inputs =
@@ -130,7 +130,7 @@ struct team_lane {
     const integer_of<R>* event_count;
 };
 
-/// The summaries of the units of a thread: the receivers are counted as among `units` units.
+/// The summaries of a thread's units. Their receivers are numbered as in a system of `units` units; see `receiver`.
 template <class Whole, int units>
 struct part_summaries {};
 template <class Whole, int units>
@@ -221,7 +221,7 @@ struct part_of_units : part_summaries<Whole, (Whole::n_unit + threads - 1) / thr
         copy(constant_index<n_integer_accessory<Whole>>{}, integer_accessories<R>(), args.integer_accessory);
         together::synchronise();
     }
-    /// Keeps the inputs in the team's memory as they are: those of `before`, which is a copy of the data.
+    /// Copies the inputs to another place in the team's memory, to which `before`, a copy of the data, then refers.
     template <class R>
     static MYRIAD_FUNCTION void keep_inputs([[maybe_unused]] auto& before) {
         if constexpr (layout::keeps_inputs) {
@@ -232,7 +232,7 @@ struct part_of_units : part_summaries<Whole, (Whole::n_unit + threads - 1) / thr
             before.in_memory = layout::kept;
         }
     }
-    /// Whether this thread's share of them differs from those kept.
+    /// Whether this thread's share of the inputs differs from that copy.
     template <class R>
     static MYRIAD_FUNCTION bool inputs_differ() {
         bool different = false;
@@ -346,9 +346,9 @@ struct part_of_units : part_summaries<Whole, (Whole::n_unit + threads - 1) / thr
         }
         return values;
     }
-    /// Whether it is this thread that keeps the summaries of its quantity of that number.
+    /// Whether the unit of this thread's quantity of that number is its own, so that this thread keeps the summaries.
     static MYRIAD_FUNCTION bool keeps(int quantity) { return is_own(quantity / n_unit_observed<unit_type>); }
-    /// The receiver of a summary, as it is numbered there.
+    /// The receiver of a summary, by its number in `part_summaries`.
     template <class R>
     static MYRIAD_FUNCTION R& receiver(int number) {
         constexpr int size = n_unit_accessory<unit_type>, of_system = n_accessory<unit_type>;

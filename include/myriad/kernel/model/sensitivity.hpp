@@ -9,7 +9,7 @@
 
 namespace myriad {
 
-/// The ends of the time domain of all phases, which `with_sensitivities` has derivatives by.
+/// The ends of the time domain of all phases, by which `with_sensitivities` has derivatives.
 enum class time_domain {
     t_begin,  ///< where phases start, unless time is carried on
     t_end,    ///< where they end at the latest
@@ -19,7 +19,7 @@ enum class time_domain {
 
 namespace myriad::detail {
 
-/// The component that an enumerator of the model's, or of the time domain's ends, names.
+/// What an enumerator names: a component of the model, or an end of the time domain.
 template <class Model, auto component>
 constexpr moving_component moving_of() {
     using E = std::remove_cv_t<decltype(component)>;
@@ -48,8 +48,8 @@ struct sensitivity_places {
     static constexpr int event_time = time + directions;
     static constexpr int undefined = event_time + 1;
     static constexpr int count = undefined + 1;
-    /// In directions by the time domain's ends, 1 or 0 for each phase: whether it carries on from the last one, and
-    /// whether it goes to t_end and not to an end that `phase_length` counts from t_begin.
+    /// Behind them, if an end of the time domain moves, 1 or 0 for the phase: whether it carries on from the last one,
+    /// and whether it goes to t_end, and not to an end that `phase_length` counts from t_begin.
     static constexpr int carries_on = count;
     static constexpr int goes_to_t_end = carries_on + 1;
 };
@@ -67,8 +67,7 @@ struct component_directions {
                                              ((moving_of<Model, wrt>().kind == moving::t_end) || ...);
     using places = sensitivity_places<Model, count>;
 
-    /// The derivatives in direction i of the begin and the end of a phase that starts at its t_begin and reaches its
-    /// t_end.
+    /// The derivatives, in direction i, of a phase's begin if it starts at t_begin, and of its end if no event ends it.
     template <class S, int i>
     MYRIAD_FUNCTION static S of_begin() {
         constexpr moving_component its = at<i>;
@@ -164,8 +163,9 @@ namespace myriad {
 /// Model, `sensitivity(c, i)`, the derivative of state c by component i of the list, which `rhs` called with dual
 /// numbers determines; after the accessories of Model `accessory_sensitivity(a, i)`, their derivatives, and
 /// `time_sensitivity(i)`, that of the time at which the phase ended. They are derivatives of the numbers beside them:
-/// at a given time within a phase, and at its end too, unless an event ended it, whose time depends on the component,
-/// or it is an end that they are by. Actions transform them as they transform the distance to a neighbouring solution.
+/// at a given time within a phase, and at its end too. Where an event ended the phase, or an end of the time domain is
+/// the component, that time moves with the component. Actions transform derivatives as they transform the distance to a
+/// neighbouring solution.
 /// `initial_sensitivities(ensemble)` sets them where the solution starts.
 ///
 /// What a derivative at an event needs and does not exist, as where the solution only touches the surface, makes the
@@ -205,7 +205,7 @@ struct with_sensitivities : detail::observing<Model, detail::component_direction
     MYRIAD_FUNCTION static int time_sensitivity(int i = 0) { return places::time + i; }
     static constexpr int event_time = places::event_time;  ///< the time of the phase's last event, or of its begin
     static constexpr int undefined = places::undefined;    ///< number of events at which a derivative did not exist
-    static constexpr int n_accessory = places::count + (directions::move_time_domain ? 2 : 0);  ///< of all accessories
+    static constexpr int n_accessory = places::count + (directions::move_time_domain ? 2 : 0);  ///< how many in all
 
     /// The model's own hook, and what derivatives need of the phase's begin.
     MYRIAD_FUNCTION static void initialise(auto& wrapped) {

@@ -111,7 +111,7 @@ private:
     }
 
     /// The state at that part of a step, or at its end, as a function of the component. Stages in shared memory are
-    /// read where they are, for what is stored alone.
+    /// read there, and only for components that are stored.
     MYRIAD_FUNCTION auto sampled_state(const step_data<Method, S, n>& step, const S& theta, const mask& at_end) const {
         if constexpr (shares_stages<Method, Model, S>) {
             return [&step, theta, at_end](int c) MYRIAD_LAMBDA {
@@ -169,7 +169,7 @@ private:
     MYRIAD_FUNCTION void store(int i, R t, const vec<R, n>& y) const {
         store_values(i, t, [&](int c) MYRIAD_LAMBDA { return y[c]; });
     }
-    /// Stores a sample, a component of which is y(component).
+    /// Stores a sample with the components y(c).
     template <class State>
     MYRIAD_FUNCTION void store_values(int i, R t, State&& y) const {
         std::int32_t& stored = args.sample.stored[s.instance[i]];
@@ -177,7 +177,7 @@ private:
         const std::int64_t cell = static_cast<std::int64_t>(stored) * args.size + s.instance[i];
         args.sample.time[cell] = t;
         std::int64_t apart = args.size * args.sample.capacity;
-        MYRIAD_OPTIMISATION_BARRIER(apart);  // else each column's place is in registers throughout the loop over steps
+        MYRIAD_OPTIMISATION_BARRIER(apart);  // else registers hold each column's place throughout the loop over steps
         MYRIAD_UNROLL
         for (int c = 0; c < n; ++c) {
             const int column = args.sample_column[detail::whole_state<Model>(c)];

@@ -112,7 +112,7 @@ private:
     template <int q, over_phase kind>
     static constexpr bool extreme = summarises<Model>(q, kind);
 
-    /// Whether this thread keeps the summaries of its quantity q: of several, those that there are.
+    /// Whether this thread keeps the summaries of its quantity q. In a team, it does for quantities of its own units.
     template <int q>
     static MYRIAD_FUNCTION bool keeps() {
         if constexpr (team_size<Model> == 1) {
@@ -247,9 +247,9 @@ private:
         search_inside(step, first, last, search);
     }
 
-    /// One quantity and sign after the other, with the same code: 1 for the maximum, -1 for the minimum. In a team, one
-    /// thread's quantity after the other's: all threads look at the same point of the step, as the quantity may depend
-    /// on the states of all.
+    /// One quantity and sign after the other, with the same code: 1 for the maximum, -1 for the minimum. A team takes
+    /// its threads' quantities one after the other: all threads look at the same point of the step, as a quantity may
+    /// depend on the states of all.
     MYRIAD_FUNCTION void search_inside(step_type& step, const slopes& first, const slopes& last, mask search) {
         search = team_for<Model>::any(search);
         if constexpr (!integrates) know_interpolant(step, search);

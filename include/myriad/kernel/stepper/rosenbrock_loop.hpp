@@ -9,8 +9,8 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// Components whose sums over stages are added up in registers at a time, for which as many loads are under way. The
-/// same number of them in each part, 11 of 33 states, took 6 % longer than 16, 16 and 1 (ras/cAMP/PKA, NVIDIA H100).
+/// Components whose sums over stages are added up in registers at a time, so that as many loads are under way. Equal
+/// parts of 33 states, 11 each, took 6 % longer than 16, 16 and 1 (ras/cAMP/PKA, NVIDIA H100).
 inline constexpr int summed_at_once = 16;
 
 /// The weights as tables, for a loop over stages.

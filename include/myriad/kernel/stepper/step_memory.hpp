@@ -59,12 +59,12 @@ struct step_memory : stage_memory<Method, Model, R> {
 template <class Memory>
 inline constexpr int step_memory_stride =
     static_cast<int>(((sizeof(Memory) + bytes_loaded_at_once - 1) / bytes_loaded_at_once | 1) * bytes_loaded_at_once);
-/// Largest such stride, of which a warp's 32 threads have room in the 227 kB of a multiprocessor. NVIDIA H100: 10 000
-/// instances of EARM, 77 states, 524 ms without, 424 with the stages, 5.5 kB; 65 536 of Lorenz 96 with 80 and 96 states
-/// by dormand_prince_5 47 and 54 ms without, 19 and 32 with 5.2 and 6.2 kB.
+/// Largest such stride with which a warp's 32 threads fit the 227 kB of a multiprocessor. NVIDIA H100: 10 000 instances
+/// of EARM, 77 states, 524 ms without, 424 with the stages, 5.5 kB; 65 536 of Lorenz 96 with 80 and 96 states by
+/// dormand_prince_5 47 and 54 ms without, 19 and 32 with 5.2 and 6.2 kB.
 inline constexpr int largest_step_memory_stride = 7200;
-/// The same for stages and factors together, which leave the rest too little cache. NVIDIA H100: 1000 rings of 64
-/// states 40 ms with all 7.1 kB of a thread there, 34 with the stages alone, 4.6 kB, and 55 without.
+/// The same for stages and factors together: more of them leave too little cache for the rest. NVIDIA H100: 1000 rings
+/// of 64 states 40 ms with all 7.1 kB of a thread there, 34 with the stages alone, 4.6 kB, and 55 without.
 inline constexpr int largest_stride_with_factors = 4800;
 
 /// Largest trial step of an explicit method that is left to registers, and what of it they do not hold to local memory.

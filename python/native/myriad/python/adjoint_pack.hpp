@@ -10,34 +10,35 @@
 
 namespace myriad::python {
 
-/// A record of steps, what of it is looked at, and what is computed; adjoint.py has the same members. Arrays of records
-/// are [record][instance], the others [instance][sample][quantity] and [instance][state or chosen parameter].
+/// The records of steps, the samples that are taken of them, and what is computed; adjoint.py has the same members.
+/// Arrays of records are [record][instance], `values` and `weights` [instance][sample][quantity], `gradient`
+/// [instance][state or chosen parameter].
 struct adjoint_call {
     std::int64_t size;           ///< number of instances
     const std::int32_t* stored;  ///< number of records of each: the start, and the end of each step
     const double* time;
     const double* const* state;         ///< one array for each state
-    const double* const* acted;         ///< one for each action: how often before
+    const double* const* acted;         ///< one for each action: how often it acted before
     const double* const* acted_in_all;  ///< the same after the last record, by instance
     const double* const* parameter;     ///< one array for each parameter, by instance
     const double* shared;
     const std::int32_t* shared_integer;
     const double* sample_time;  ///< in the direction of time; null for one sample at the end, after actions there
     std::int64_t samples;
-    double* values;         ///< the quantities at the samples, or
-    const double* weights;  ///< derivatives of the loss by them, and
-    double* gradient;       ///< its derivatives by initial states and chosen parameters
+    double* values;         ///< for the quantities at the samples; null if the gradient is wanted
+    const double* weights;  ///< the derivatives of the loss by these quantities
+    double* gradient;       ///< for the derivatives of the loss by initial states and chosen parameters
 };
 
 }  // namespace myriad::python
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// Instances of an adjoint call that lanes go through together. `Adjoint` has, besides what transposed_step.hpp asks
-/// for, n_quantity `quantities` of time, state and parameters, and `transposed_quantities`; and n_action actions of
-/// events and stops: `act` gives the state after one, `transposed_act` and `slope_of_event` have derivatives by time
-/// behind the others. A record has the state before an action at its time. Computes the values of quantities or the
-/// gradient.
+/// Instances of an adjoint call that lanes go through together. Computes the values of quantities or the gradient.
+/// Besides what transposed_step.hpp asks for, `Adjoint` has n_quantity `quantities` of time, state and parameters, and
+/// `transposed_quantities`; and n_action actions of events and stops: `act` gives the state after one, `transposed_act`
+/// and `slope_of_event` have derivatives by time behind the others. A record at the time of an action has the state
+/// before it.
 template <class Adjoint, class Method, class S, bool wants_values>
 class adjoint_pack {
     using R = real_of<S>;
@@ -101,8 +102,8 @@ private:
             set_lane(acted_[a], i, after > call_.acted[a][cell]);
         }
     }
-    /// The state before action a, which is n_action for that after all. Of actions at one time each sees what those
-    /// before it have done.
+    /// The state before action a; after all actions if a is n_action. Of actions at one time each sees what the earlier
+    /// ones have done.
     template <int a>
     vec<S, n> before_action() const {
         vec<S, n> y = before_;
