@@ -187,6 +187,7 @@ class Adjoint:
             run = self._record(rows[part])
             if self._gpu is not None and group > 1 and not run.device.has_samples():  # they took too much of its memory
                 self._most_on_gpu //= 2
+                del run  # and with it its memory, before the next one
                 continue
             stored, kept = run.stored_samples, self._capacity
             longest = max(int(stored.max()), int(run.steps("accepted").max())) + 1
@@ -205,6 +206,7 @@ class Adjoint:
             found[~(np.isfinite(found).all(axis=1) & done)] = np.nan
             gradient[part], status[part] = found[:, self._place], run.status
             first = part.stop
+            del run, call
         return values, gradient, status
 
     def _record(self, rows: Array) -> Run:
@@ -247,7 +249,8 @@ def _checked(model: AnyModel, by: Sequence[str]) -> Model:
     if model.triggers or model.queue is not None:
         raise _refuse("the model has triggers")
     if model.initialise or model.after_step or model.finalise:
-        raise _refuse("the model has hooks or accessories")
+        jumps = bool(model.stops) and model.hidden.issuperset(model.accessories)
+        raise _refuse("the equations jump in time" if jumps else "the model has hooks or accessories")
     if any(s.value[0] in ("accessory", "integer_accessory") for s in symbols_of(model.rhs)):
         raise _refuse("the equations read accessories")
     for one in (*model.events, *model.stops):

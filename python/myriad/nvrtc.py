@@ -186,6 +186,7 @@ def _program(header: str, struct: str, method: str, real: str, shared: tuple[int
 
 
 _loaded: dict[Any, _core.Library] = {}
+_single_kernels: dict[Any, _core.GpuKernel] = {}
 
 
 def _cached(source: str, capability: int, load: Callable[[bytes], object]) -> cache.Obtained:
@@ -232,8 +233,10 @@ def prepare(header: str, struct: str, method: str, real: str, shared: tuple[int,
 def single_kernel(source: str, name: str, device: int) -> _core.GpuKernel:
     """Compiles a file for the GPU of that number, and returns its kernel of that name."""
     _, capability, _ = _core.gpu(device)
-    found: _core.GpuKernel = _cached(source, capability, lambda program: _core.GpuKernel(program, name, device)).loaded
-    return found
+    asked = source, name, device, os.environ.get("MYRIAD_NVRTC")
+    if asked not in _single_kernels:
+        _single_kernels[asked] = _cached(source, capability, lambda program: _core.GpuKernel(program, name, device)).loaded
+    return _single_kernels[asked]
 
 
 @functools.cache

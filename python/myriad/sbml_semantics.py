@@ -216,7 +216,8 @@ class Semantics:
             start = start() if callable(start) else start
             if start is not None and is_constant(start):
                 return start
-        if quantity.value is not None and math.isinf(quantity.value) and quantity.initial is None:
+        if quantity.value is not None and math.isinf(quantity.value) and quantity.initial is None and (
+                quantity.id not in (self.swept or ())):
             return constant(quantity.value)  # which no parameter of a model can have
         return sym.symbol("parameter", name)
 

@@ -119,6 +119,8 @@ class WithSensitivities(Extended):
             for key in ("states", "accessories"):
                 if key in chosen:
                     chosen[key] = self._derivatives_of(chosen[key], components)
+            if chosen.get("time"):  # whose derivatives outputs need
+                chosen["accessories"] = [*chosen.get("accessories", ()), *(f"time_by_{k}" for k in self.by)]
             record = chosen
         if isinstance(samples, Mapping) and "states" in samples:
             samples = {**samples, "states": self._derivatives_of(samples["states"], components)}
@@ -223,7 +225,8 @@ class Sensitivities(Mapping[Any, Any]):
             if kind == "state":
                 inner: Any = run._output_at(place, symbol_of("state", f"{name}_by_{k}"))
             elif symbol is time:
-                inner = run[f"time_by_{k}"] if place is None else 0.0
+                at_end = run.records if place == "phase" else run.accessories
+                inner = 0.0 if place == "sample" else at_end[f"time_by_{k}"]
             else:
                 inner = float(name == k)
             total = total + run._output_at(place, partial) * inner

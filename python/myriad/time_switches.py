@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import expression as ex, symbols as sym
 from .expression import symbols_of, text, walk
-from .folding import (add, apply, choose, compare, constant, divide, is_constant, make_folded, multiply, subtract,
+from .folding import (add, apply, both, choose, compare, constant, divide, is_constant, make_folded, multiply, subtract,
                       total, value_of)
 from .model import Event, Stop, stop
 from .per_phase import rebuilt
@@ -35,8 +35,7 @@ Form = dict[Any, Any]  #: a sum: coefficients by what they multiply, which is 1,
 def margin() -> Any:
     """The difference of times that count as one instant: rounding errors of the time, and of steps through the whole
     time domain, whatever the model's unit of time is."""
-    domain = ex.abs(sym.t_end - sym.t_begin)
-    return 1e-10 * ex.abs(sym.time) + 1e-13 * choose(compare("less", domain, constant(1e300)), domain, constant(0.0))
+    return 1e-10 * ex.abs(sym.time) + 1e-13 * ex.abs(sym.t_begin)
 
 
 def note(model: Any, options: Options) -> str | None:
@@ -74,8 +73,8 @@ class TimeSwitches:
         self.unknown = [text(node) for node, times in found.items() if times is None]
         in_events = {node for node in walk(functions) if found.get(node)}
         for function in functions:
-            if self._is_of_time(function) and any(key is not sym.time and key is not _one
-                                                  for key in self._form(function) or ()):
+            if self._is_of_time(function) and (any(node in found for node in walk([function])) or any(
+                    key is not sym.time and key is not _one for key in self._form(function) or ())):
                 crossing = compare("less", function, constant(0.0))
                 found[crossing] = self._times_of(crossing)
                 in_events.add(crossing)
@@ -85,15 +84,26 @@ class TimeSwitches:
         if not times:
             return
         following, middle = (sym.accessory(free_name(name)) for name in ("next_jump", "between_jumps"))
-        between = {node: self._between(node, middle) for node, several in found.items() if several is not None}
+        between: dict[Any, Any] = {}
+        for node, several in found.items():  # arguments come before what is of them
+            if several is not None:
+                between[node] = self._between(node, middle, between)
         self.equations = dict(zip(equations, rebuilt(list(equations.values()), lambda node: node, between)))
         first = self._first(times)
-        to_middle = 0.5 * (sym.time + first)
+        # after the last jump: some time, as an infinite one makes NaN of k * time where k is zero
+        later = sym.time + self._direction * (1.0 + ex.abs(sym.time) + 2.0 * margin())
+        is_finite = compare("less", ex.abs(first), constant(math.inf))
+        to_middle = 0.5 * (sym.time + choose(is_finite, first, later))
         start = {following: to_middle if in_events else first, middle: to_middle}
         at_jump = start
         if in_events:
+            # functions of events are seen in the middle, and once more shortly before the jump, as they are until then
+            ahead = 4.0 * (1e-10 * ex.abs(first) + 1e-13 * ex.abs(sym.t_begin))
+            is_near = both(is_finite, compare("less_equal", self._direction * (first - sym.time), 2.0 * ahead))
+            before = choose(is_finite, first - self._direction * ahead, first)
             is_middle = compare("equal", following, middle)
-            at_jump = {following: choose(is_middle, first, to_middle), middle: choose(is_middle, middle, to_middle)}
+            at_jump = {following: choose(is_near, first, choose(is_middle, before, to_middle)),
+                       middle: choose(is_middle, middle, to_middle)}
         self.stops.append(stop(following, every=0, name=free_name("jump"), do=at_jump))
         needed = set(symbols_of([first]))
 
@@ -132,12 +142,13 @@ class TimeSwitches:
                           constant(math.inf)) for t in times]
         return self._direction * functools.reduce(lambda a, b: ex.make("min", (a, b)), to_come)
 
-    def _between(self, node: Any, middle: Any) -> Any:
-        """What jumps, as it is between two jumps."""
+    def _between(self, node: Any, middle: Any, known: dict[Any, Any]) -> Any:
+        """What jumps, as it is between two jumps; what jumps in it is known."""
         inside = self._at(node, middle)
         if node.op != "fmod":
             return inside
-        return subtract(node.args[0], subtract(self._at(node.args[0], middle), inside))  # less whole multiples
+        value, = rebuilt([node.args[0]], lambda one: one, known)
+        return subtract(value, subtract(self._at(node.args[0], middle), inside))  # less whole multiples
 
     # -- When it jumps -------------------------------------------------------------------------------------------------
 
@@ -170,7 +181,15 @@ class TimeSwitches:
 
     def _rest(self, form: Form) -> Any:
         """A sum without its multiple of the time."""
-        return total([multiply(factor, self._now_of(key)) for key, factor in form.items() if key is not sym.time])
+        return total([self._term(factor, self._now_of(key)) for key, factor in form.items() if key is not sym.time])
+
+    @staticmethod
+    def _term(factor: Any, value: Any) -> Any:
+        """A product that is zero where the factor is, even if the value is not finite, as floor(time / 0)."""
+        product = multiply(factor, value)
+        if is_constant(factor) or is_constant(value):
+            return product
+        return choose(compare("equal", factor, constant(0.0)), constant(0.0), product)
 
     def _roots(self, form: Form, values: list[Any]) -> list[Any]:
         """The times at which a sum has some values."""

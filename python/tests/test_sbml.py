@@ -399,6 +399,42 @@ def test_a_window_of_a_state_that_measures_time_is_not_passed_over():
     assert run["n"] == 3  # from 1 to 4.5, and from 2.5 to 5.75: at 2.269 and 4.363, and at 4.363
 
 
+@pytest.mark.parametrize("formula, given, end, area", [
+    ("piecewise(1, g * time < 3, 0)", 0, 10, 10), ("piecewise(1, sin(time) < 2, 0)", 0, 10, 10),
+    ("piecewise(1, (time - 3) * g >= 0, 0)", 0, 10, 10), ("piecewise(1, time > 5 && time < g, 0)", np.inf, 10, 5),
+    ("piecewise(1, time < 5, 0)", 0, 1e15, 5), ("piecewise(1, time > 5 && time < 5.05, 0)", 0, 1e12, 0.05)])
+def test_a_rate_is_right_after_its_last_jump_and_in_long_domains(formula, given, end, area):
+    model = my.read_sbml(sbml_models.document([variable("x", 0), parameter("g", given), rate("x", formula)]))
+    run = my.solve(model, time=(0, end), interpreted=True)
+    np.testing.assert_allclose(run["x"], area, rtol=1e-7)
+
+
+def test_a_dosing_interval_of_zero_means_no_repeat():
+    model = my.read_sbml(sbml_models.document([
+        variable("x", 0), parameter("tau", 0), rate("x", "piecewise(1, phase < 1, 0)"), variable("phase"),
+        always("phase", "piecewise(rem(time, tau), tau > 0, time)")]))
+    run = my.solve(model, {"tau": [0, 4, 2.5]}, time=(0, 9), interpreted=True)
+    np.testing.assert_allclose(run["x"], [1, 3, 4], rtol=1e-7)
+
+
+@pytest.mark.parametrize("trigger, at", [
+    ("piecewise(1, time < 5, 0) * (time - 4.5) > 0.1", 4.6), ("piecewise(1, rem(time, 10) < 5, 0) * x > 4.95", 4.95),
+    ("piecewise(10, time < 5, 0) + x > 14.9", 4.9), ("piecewise(1, time >= 5 && time < 6, 0) * (x - 5.9) > 0.01", 5.91)])
+def test_a_trigger_that_jumps_in_time_is_not_missed_before_the_jump(trigger, at):
+    model = my.read_sbml(sbml_models.document([
+        variable("x", 0), rate("x", "1 + 1e-9 * x"), variable("n", 0), variable("when", 0),
+        event(trigger, {"n": "n + 1", "when": "time"})]))
+    run = my.solve(model, time=(0, 9), interpreted=True)
+    assert run["n"] == 1
+    np.testing.assert_allclose(run["when"], at, rtol=1e-7)
+
+
+def test_a_constant_that_is_infinite_in_the_file_can_be_swept():
+    model = my.read_sbml(sbml_models.document([variable("x", 0), parameter("off", np.inf), rate(
+        "x", "piecewise(1, time < off, 0)")]), parameters="off")
+    np.testing.assert_allclose(my.solve(model, {"off": [7, 2]}, time=(0, 10), interpreted=True)["x"], [7, 2], rtol=1e-7)
+
+
 def test_a_comparison_begins_to_hold_where_its_opposite_ceases_to():
     model = my.read_sbml(sbml_models.document([
         variable("x", 0), rate("x", "cos(time)"), variable("n", 0), variable("m", 0), variable("waited", 0),

@@ -181,6 +181,19 @@ def test_initial_values_that_follow_from_the_begin_have_its_derivative():
                                rtol=1e-8)
 
 
+def test_outputs_that_read_the_time_move_with_the_end_of_recorded_phases():
+    pytest.importorskip("libsbml")
+    import sbml_models as sbml
+
+    model = my.read_sbml(sbml.document([sbml.variable("x", 1), sbml.parameter("k", 0.5), sbml.rate("x", "-k * x"),
+                                        sbml.variable("r"), sbml.always("r", "x * time")]))
+    call = {"time": (0, 2), "sensitivities": [my.t_end, "k"], **tight}
+    expected = np.exp(-1) * np.array([1 - 0.5 * 2, -2 * 2])  # of x t = t exp(-k t)
+    np.testing.assert_allclose(my.solve(model, **call).sensitivity["r"][0], expected, rtol=1e-8, atol=1e-9)
+    run = my.solve(model, record={"states": ["x"], "time": True}, **call)
+    np.testing.assert_allclose(run.sensitivity["r"][0, 0], expected, rtol=1e-8, atol=1e-9)
+
+
 @pytest.mark.parametrize("by, message", [
     (my.time, "is no component of a model"),
     (my.step, "is no component of a model"),

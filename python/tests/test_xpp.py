@@ -220,6 +220,11 @@ global 1 {t-6} {since=t}
         np.testing.assert_allclose(run[name], area, rtol=1e-7)
 
 
+def test_remainders_of_remainders_are_exact():
+    run = solved("x'=mod(mod(t,24),6)\ny'=heav(sin(t)-1.5)\n", time=(0, 48), samples=None)
+    np.testing.assert_allclose([run["x"][0], run["y"][0]], [144, 0], rtol=1e-9)
+
+
 def test_a_function_of_t_is_no_integral_equation():
     run = solved("stim(t)=s0*if(t<1)then(t)else(0)\npar s0=2\nx'=stim(t)+stim(t-1)\nonly x\n")
     np.testing.assert_allclose(run["x"][0, -1], 1, rtol=1e-9)  # of 2t until 1, and of 2(t - 1)
