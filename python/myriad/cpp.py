@@ -481,7 +481,7 @@ class Writer:
                 first, every, count = (f"{n.R}({body.text(value)})" for value in one.values)
                 value = f"myriad::recurring({n.number}, {first}, {every}, {count})"
             else:
-                value = f"myriad::infinity_of<{n.R}>"
+                value = f"{n.R}(myriad::infinity_of<myriad::real_of<{n.R}>>)"
                 for number, time in reversed(list(enumerate(one.times))):
                     value = f"{n.number} == {number} ? {n.R}({body.text(time)}) : {value}"
             is_last = i + 1 == len(stops) and not self.model.queue

@@ -17,6 +17,7 @@ import myriad as my
 import test_cpp
 from myriad import _core, cache, nvrtc
 from myriad.methods import method_type, methods
+from myriad.sensitivities import with_sensitivities
 
 pytestmark = pytest.mark.skipif(nvrtc.find() is None, reason="there is no NVRTC")
 # Where there is a driver, NVRTC 13 takes what it compiled before from a cache, and then tells nothing of what it did
@@ -61,6 +62,12 @@ def bells():
                     after_step={my.end_phase: turns[0] > 9})
 
 
+def dosed():
+    """Derivatives by the time of a dose."""
+    x, at = my.state("x"), my.parameter("at")
+    return with_sensitivities(my.model({x: -x}, stops=my.stop(at, do={x: x + 1})), [at])
+
+
 # What is compiled for each method: models with every kind of hook and event, outputs along the solution, tables.
 cases = [
     (example_models.duffing, "cash_karp", (), False, "double"),
@@ -75,6 +82,7 @@ cases = [
     (remainders, "tsitouras_5", (), False, "double"),
     (ring, "tsitouras_5", ("rms_norm",), True, "double"),
     (bells, "cash_karp", (), False, "double"),
+    (dosed, "tsitouras_5", (), False, "double"),
     (example_models.continuation, "rodas_5p", ("pid_control", "mixed_scale"), True, "double"),
 ]
 models = (*example_models.headers, test_cpp.every_operation, epidemic)
