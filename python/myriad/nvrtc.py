@@ -235,7 +235,8 @@ def single_kernel(source: str, name: str, device: int) -> _core.GpuKernel:
     _, capability, _ = _core.gpu(device)
     asked = source, name, device, os.environ.get("MYRIAD_NVRTC")
     if asked not in _single_kernels:
-        _single_kernels[asked] = _cached(source, capability, lambda program: _core.GpuKernel(program, name, device)).loaded
+        obtained = _cached(source, capability, lambda program: _core.GpuKernel(program, name, device))
+        _single_kernels[asked] = obtained.loaded
     return _single_kernels[asked]
 
 

@@ -35,8 +35,8 @@ def assert_equal(found, expected, rtol=1e-9):
 
 
 # one of each kind: with Hermite's interpolant, or their own, with slopes at the end or extra stages; stiff ones
-@pytest.mark.parametrize("method", ["runge_kutta_4", "cash_karp", "tsitouras_5", "verner_7", "rosenbrock_23",
-                                    "rodas_5p"])
+@pytest.mark.parametrize("method", ["tsitouras_5", "rosenbrock_23", *(pytest.param(method, marks=pytest.mark.long)
+                                    for method in ("runge_kutta_4", "cash_karp", "verner_7", "rodas_5p"))])
 def test_an_adjoint_has_the_derivatives_of_the_same_steps(method):
     options = {"step": 0.01} if method == "runge_kutta_4" else {"rtol": 1e-5, "atol": 1e-5}
     assert_equal(*both(driven, sets, of=[x, y], time=(0, 2), samples=times, method=method, **functions, **options))
@@ -69,6 +69,7 @@ def robertson():
     return model, (u, v, w), rates
 
 
+@pytest.mark.long
 def test_stiff_gradients_are_those_of_controlled_sensitivities():
     model, states, rates = robertson()
     call = dict(by=rates, of=states, start=dict(zip(states, (1, 0, 0))), time=(0, 400), samples=[0.4, 40.0, 400.0],
@@ -98,6 +99,7 @@ def test_a_stiff_network_that_needs_pivots_has_the_gradient_of_differences():
     np.testing.assert_allclose(gradient, expected, rtol=1e-6, atol=1e-7 * np.abs(expected).max())
 
 
+@pytest.mark.long
 def test_doses_at_stop_times_have_an_adjoint():
     dose, share = my.parameters("dose share")
     doses = my.stop(0.0, every=0.5, count=4, do={x: x + share * dose, y: y + (1 - share) * dose * my.exp(-x)})
@@ -109,6 +111,7 @@ def test_doses_at_stop_times_have_an_adjoint():
                            samples is None else 2), samples=samples, rtol=1e-8, atol=1e-8))
 
 
+@pytest.mark.long
 def test_events_that_depend_on_the_state_have_an_adjoint():
     g, r, floor = my.parameters("g r floor")
     impact = my.event(x - floor * (1 + 0.1 * my.sin(my.time)), direction="falling", do={y: -r * y}, name="impact")
@@ -130,6 +133,7 @@ def test_an_event_at_the_time_of_another_action_is_refused():
         f.vjp([[1.0, 1.0], [0.7, 1.0]], [1.0])
 
 
+@pytest.mark.long
 def test_events_without_an_action_change_no_gradient():
     watched = my.model(dict(zip([x, y], driven.rhs)), events=my.event(x - y), name="watched")
     call = dict(of=[x, y], time=(0, 2), samples=times, **functions, **tight)
@@ -138,6 +142,7 @@ def test_events_without_an_action_change_no_gradient():
     np.testing.assert_allclose(found[1], both(driven, sets, **call)[0][1], rtol=1e-7)
 
 
+@pytest.mark.long
 def test_a_network_with_sparse_factors_has_the_derivatives_of_the_same_steps():
     z = my.states([f"z{i}" for i in range(7)])
     flow = [a * z[i] - 50 * z[i + 1] * z[i + 1] for i in range(6)]
@@ -248,7 +253,7 @@ def test_jax_and_torch_take_gradients_by_an_adjoint():
     (driven, {"samples": [1.0, 0.5]}, "times of samples are out of order"),
     (driven, {"phases": 2}, "phases= is 2"),
     (driven, {"precision": "float"}, "double precision alone"),
-    (driven, {"device": "cuda"}, "on the CPU alone"),
+    (driven, {"device": ["cpu", "cpu:1"]}, "device= names several devices, cpu, cpu:1"),
     (driven, {"of": my.time}, "a result is the time of the end"),
 ])
 def test_what_has_no_adjoint_is_refused_with_a_cure(model, options, why):

@@ -27,6 +27,7 @@ def started(tmp_path_factory):
         yield {program: pool.submit(run, program) for program in programs}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("program", programs)
 def test_example_runs(program, started):
     place, done = started[program].result()

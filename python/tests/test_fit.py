@@ -26,6 +26,7 @@ free = {k: (1e-2, 1e2, "log"), B: (0, 5), x: (0, 10)}
 usual = {"start": {w: 0}, "sweep": others}
 
 
+@pytest.mark.long
 def test_a_fit_from_many_starts_is_scipys():
     optimize = pytest.importorskip("scipy.optimize")
     fit = my.fit(model, measured(), free=free, starts=20, **usual)
@@ -141,6 +142,7 @@ def test_intervals_of_a_profile_do_not_depend_on_what_varies():
                                0.5 * ((profile.values["B"] - fit.best["B"]) / half * 1.959964)**2, atol=1e-6)
 
 
+@pytest.mark.long
 def test_a_profile_tells_what_the_data_do_not_bound():
     # a k is determined alone, and a may be between 0.1 and 10: k between 0.07, which is below its bound, and 7.
     fit = my.fit(model, measured(), free={k: (0.1, 20), a: (0.1, 10)}, sweep={B: 0.4, unused: 0}, start={x: 2, w: 0},

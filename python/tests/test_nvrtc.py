@@ -19,7 +19,7 @@ from myriad import _core, cache, nvrtc
 from myriad.methods import method_type, methods
 from myriad.sensitivities import with_sensitivities
 
-pytestmark = pytest.mark.skipif(nvrtc.find() is None, reason="there is no NVRTC")
+pytestmark = [pytest.mark.long, pytest.mark.skipif(nvrtc.find() is None, reason="there is no NVRTC")]
 # Where there is a driver, NVRTC 13 takes what it compiled before from a cache, and then tells nothing of what it did
 # (github.com/NVIDIA/cuda-python/issues/1124).
 os.environ["CUDA_CACHE_DISABLE"] = "1"

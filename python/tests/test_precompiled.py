@@ -10,6 +10,8 @@ import pytest
 import myriad as my
 from myriad import cache, compiler
 
+pytestmark = pytest.mark.long
+
 MODEL = """
 import sys
 import myriad as my

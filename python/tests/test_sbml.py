@@ -419,7 +419,8 @@ def test_a_dosing_interval_of_zero_means_no_repeat():
 
 @pytest.mark.parametrize("trigger, at", [
     ("piecewise(1, time < 5, 0) * (time - 4.5) > 0.1", 4.6), ("piecewise(1, rem(time, 10) < 5, 0) * x > 4.95", 4.95),
-    ("piecewise(10, time < 5, 0) + x > 14.9", 4.9), ("piecewise(1, time >= 5 && time < 6, 0) * (x - 5.9) > 0.01", 5.91)])
+    ("piecewise(10, time < 5, 0) + x > 14.9", 4.9),
+    ("piecewise(1, time >= 5 && time < 6, 0) * (x - 5.9) > 0.01", 5.91)])
 def test_a_trigger_that_jumps_in_time_is_not_missed_before_the_jump(trigger, at):
     model = my.read_sbml(sbml_models.document([
         variable("x", 0), rate("x", "1 + 1e-9 * x"), variable("n", 0), variable("when", 0),

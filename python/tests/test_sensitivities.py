@@ -116,6 +116,7 @@ def test_runs_without_sensitivities_say_how_to_get_them():
         run.sensitivity  # noqa: B018
 
 
+@pytest.mark.long
 def test_stiff_methods_have_the_sensitivities_of_robertsons_reactions():
     a, b, c = my.states("a b c")
     rates = my.parameters("k1 k2 k3")

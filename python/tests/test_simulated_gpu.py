@@ -8,7 +8,7 @@ import pytest
 
 import simulated_gpu
 
-pytestmark = pytest.mark.skipif(shutil.which("g++") is None, reason="there is no g++")
+pytestmark = [pytest.mark.long, pytest.mark.skipif(shutil.which("g++") is None, reason="there is no g++")]
 
 MODEL = """
 import concurrent.futures, ctypes, os, pathlib
