@@ -1,22 +1,26 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Times ensembles of models in files of SBML, and compares them with libRoadRunner where it is installed.
+"""Times ensembles of models in files of SBML, and compares them with libRoadRunner and AMICI where they are installed.
 
 FOLDER has the files. An instance has each parameter of its file, but for those of kinetic laws, multiplied by a random
 number, the largest `--spread` times the smallest, and is integrated to the end with 100 equidistant outputs.
 libRoadRunner (CVODE, the same tolerances) solves the first instances of the same ensemble, one after the other on one
-core, and only its calls of `simulate` are timed. Times are the fastest of several calls: of a core on CPUs, where other
-work then matters less, and by the clock on GPUs. Errors are relative to the largest value of each species in each
-instance, against libRoadRunner, or else Myriad, with a relative tolerance of 1e-11; the median and the largest of the
-instances are told.
+core, and only its calls of `simulate` are timed; so does AMICI (CVODES), whose model is compiled first. Times are the
+fastest of several calls: of a core on CPUs, where other work then matters less, and by the clock on GPUs. Errors are
+relative to the largest value of each species in each instance, against libRoadRunner, or else Myriad, with a relative
+tolerance of 1e-11; the median and the largest of the instances are told.
 
-Writes rows "model,species,instances,device,program,milliseconds per instance,median error,largest error,kernel ms".
+Writes rows "model,species,instances,device,program,milliseconds per instance,median error,largest error,kernel ms", where AMICI has
+the milliseconds that its solver took.
 Nothing is downloaded: benchmarks/README.md says where the published models are from."""
 
 import argparse
 import importlib.util
+import multiprocessing
 import sys
+import tempfile
 import time
+from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -77,6 +81,35 @@ def by_roadrunner(path, ensemble, start, names, amounts, end, tolerance, count, 
     return seconds, np.array(values)
 
 
+def by_amici(path, ensemble, names, end, tolerance, count, calls=1):
+    """The same by AMICI, and the milliseconds that its solver says it took for all of them. Species are its states."""
+    import amici
+    import amici.sim.sundials
+    from amici.importers.sbml import SbmlImporter
+
+    with tempfile.TemporaryDirectory() as folder:
+        SbmlImporter(str(path)).sbml2amici(f"amici_{path.stem}", folder, generate_sensitivity_code=False)
+        model = amici.import_model_module(f"amici_{path.stem}", folder).get_model()
+    solver = model.create_solver()
+    solver.set_relative_tolerance(tolerance[0])
+    solver.set_absolute_tolerance(tolerance[1])
+    solver.set_max_steps(1_000_000)
+    model.set_timepoints(np.linspace(0, end, 100))
+    states = list(model.get_state_ids())
+    parameters, usual = list(model.get_free_parameter_ids()), np.array(model.get_free_parameters())
+    seconds, in_solver, values = 0.0, 0.0, []
+    for i in range(count):
+        model.set_free_parameters([ensemble[p][i] if p in ensemble else value for p, value in zip(parameters, usual)])
+        fastest = fastest_solver = np.inf
+        for _ in range(calls):
+            begin = time.process_time()
+            found = amici.sim.sundials.run_simulation(model, solver)
+            fastest, fastest_solver = min(fastest, time.process_time() - begin), min(fastest_solver, found.cpu_time)
+        seconds, in_solver = seconds + fastest, in_solver + fastest_solver
+        values.append(np.array(found.x)[:, [states.index(n) for n in names]])
+    return seconds, np.array(values), in_solver
+
+
 def errors(values, reference):
     """(median, largest) over instances of the largest error of any species."""
     scale = np.abs(reference).max(axis=1, keepdims=True)
@@ -131,6 +164,15 @@ def measure(path, options):
         rows.append(("libRoadRunner", "cpu:1", compared, seconds, errors(theirs, reference), ""))
         print(f"{path.stem}: {seconds / compared * options.instances / best:.1f} times as fast as libRoadRunner; "
               f"{run.report}", file=sys.stderr)
+    if importlib.util.find_spec("amici") is not None:
+        # in a process of its own, as its bindings and libRoadRunner's are mixed up in one
+        with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
+            seconds, theirs, in_solver = pool.submit(by_amici, path, ensemble, names, end, tolerance, compared,
+                                                     options.calls).result()
+        rows.append(("AMICI", "cpu:1", compared, seconds, errors(theirs, reference), in_solver))
+        factor = options.instances / best / compared
+        print(f"{path.stem}: {seconds * factor:.1f} times as fast as AMICI, {1e-3 * in_solver * factor:.1f} times as its "
+              "solver alone", file=sys.stderr)
     for program, device, count, seconds, error, in_kernel in rows:
         yield path.stem, len(names), count, device, program, 1e3 * seconds / count, *error, in_kernel
     if run.failed.any():
