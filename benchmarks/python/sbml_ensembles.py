@@ -10,8 +10,8 @@ fastest of several calls: of a core on CPUs, where other work then matters less,
 relative to the largest value of each species in each instance, against libRoadRunner, or else Myriad, with a relative
 tolerance of 1e-11; the median and the largest of the instances are told.
 
-Writes rows "model,species,instances,device,program,milliseconds per instance,median error,largest error,kernel ms", where AMICI has
-the milliseconds that its solver took.
+Writes rows "model,species,instances,device,program,milliseconds per instance,median error,largest error,kernel ms";
+AMICI has there, for all its instances, the milliseconds of its solver. It needs SWIG on the PATH.
 Nothing is downloaded: benchmarks/README.md says where the published models are from."""
 
 import argparse
@@ -171,8 +171,8 @@ def measure(path, options):
                                                      options.calls).result()
         rows.append(("AMICI", "cpu:1", compared, seconds, errors(theirs, reference), in_solver))
         factor = options.instances / best / compared
-        print(f"{path.stem}: {seconds * factor:.1f} times as fast as AMICI, {1e-3 * in_solver * factor:.1f} times as its "
-              "solver alone", file=sys.stderr)
+        print(f"{path.stem}: {seconds * factor:.1f} times as fast as AMICI, {1e-3 * in_solver * factor:.1f} times as "
+              "its solver alone", file=sys.stderr)
     for program, device, count, seconds, error, in_kernel in rows:
         yield path.stem, len(names), count, device, program, 1e3 * seconds / count, *error, in_kernel
     if run.failed.any():
