@@ -63,9 +63,10 @@ def bells():
 
 
 def dosed():
-    """Derivatives by the time of a dose."""
+    """Derivatives by the times of doses."""
     x, at = my.state("x"), my.parameter("at")
-    return with_sensitivities(my.model({x: -x}, stops=my.stop(at, do={x: x + 1})), [at])
+    stops = [my.stop(at, do={x: x + 1}), my.stop(0, every=at, name="again", do={x: x + 2})]
+    return with_sensitivities(my.model({x: -x}, stops=stops), [at])
 
 
 # What is compiled for each method: models with every kind of hook and event, outputs along the solution, tables.

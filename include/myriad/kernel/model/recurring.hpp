@@ -11,7 +11,8 @@ namespace myriad::inline MYRIAD_TARGET {
 /// no stop, from `count` on. Computed from `first`, so that rounding does not accumulate.
 template <class R, class Count>
 MYRIAD_FUNCTION R recurring(int number, const R& first, const R& interval, const Count& count) {
-    return static_cast<Count>(number) < count ? fma(static_cast<R>(number), interval, first) : infinity_of<R>;
+    return static_cast<Count>(number) < count ? fma(static_cast<R>(number), interval, first)
+                                              : R(infinity_of<real_of<R>>);
 }
 
 }  // namespace myriad::inline MYRIAD_TARGET
