@@ -33,8 +33,8 @@ Form = dict[Any, Any]  #: a sum: coefficients by what they multiply, which is 1,
 
 
 def margin() -> Any:
-    """The difference of times that count as one instant: rounding errors of the time, and of steps through the whole
-    time domain, whatever the model's unit of time is."""
+    """The difference of times that count as one instant: rounding errors of the time and of where it began, whatever
+    the model's unit of time is."""
     return 1e-10 * ex.abs(sym.time) + 1e-13 * ex.abs(sym.t_begin)
 
 
