@@ -57,7 +57,7 @@ struct summariser {
             const R first = time ? one.t : (what.kind == over_phase::integral ? R(0) : q[what.quantity]);
             if (keeps<what.quantity>()) set_lane(receiver<what.accessory>(), i, first);
         });
-        if constexpr (n_summary < Model >> 0) team_for<Model>::synchronise();  // stop times may read them
+        team_for<Model>::synchronise();  // stop times may read them
     }
 
     /// Updates the summaries with the accepted trial steps, which end at t1, before they are committed. Returns the
