@@ -77,7 +77,7 @@ class Adjoint:
     def __init__(self, model: AnyModel, by: Sequence[str], of: Sequence[Any], sweep: Mapping[str, Any],
                  start: Mapping[str, Any], options: Mapping[str, Any], samples: Any = None) -> None:
         self.model = _checked(model, by)
-        self._actions = [one for one in (*self.model.events, *self.model.stops) if one.do]
+        self._actions = _actions(self.model)
         self._recorded, self._counters = _counting(self.model, self._actions)
         self._components = components = Components(model)
         self.by, self.of = list(by), list(of)
@@ -133,12 +133,14 @@ class Adjoint:
                 writer.argument("u", "n_state"), writer.argument("tau", ""), writer.argument("v", "n_state")]))
         for number, one in enumerate(self._actions):
             functions += self._action(one, writer, number, v, [*symbols, sym.time], count)
+        switches = self.model.switches
+        between = self.model.accessories.index(switches.between.value[1]) if switches.at_jump else -1
         are_events = ", ".join("true" if isinstance(one, Event) else "false" for one in self._actions)
         body = "\n\n".join("\n".join(f"    {line}" for line in function) for function in functions)
         library = "adjoint_library.hpp" if self._gpu is None else "device_adjoint.cuh"
         return (f"#include <myriad/python/{library}>\n\n{text}\nstruct {struct}_adjoint : {struct} {{\n"
                 f"    static constexpr int n_wrt = {chosen}, n_quantity = {len(self.of)}, "
-                f"n_action = {len(self._actions)};\n"
+                f"n_action = {len(self._actions)}, between_jumps = {between};\n"
                 f"    static constexpr bool is_event[] = {{{are_events or 'false'}}};\n\n{body}\n}};\n"
                 f"using myriad_method = {method_type(self.method)};\n"
                 f"MYRIAD_ADJOINT({struct}_adjoint, myriad_method)\n")
@@ -248,28 +250,42 @@ def _checked(model: AnyModel, by: Sequence[str]) -> Model:
         raise _refuse("the model has a mass matrix")
     if model.triggers or model.queue is not None:
         raise _refuse("the model has triggers")
-    if model.initialise or model.after_step or model.finalise:
-        jumps = bool(model.stops) and model.hidden.issuperset(model.accessories)
-        raise _refuse("the equations jump in time" if jumps else "the model has hooks or accessories")
-    if any(s.value[0] in ("accessory", "integer_accessory") for s in symbols_of(model.rhs)):
+    switches = model.switches
+    if any(target not in switches.at_jump for target, _ in (*model.initialise, *model.after_step, *model.finalise)):
+        raise _refuse("the model has hooks or accessories")
+    if any(s.value[0] in ("accessory", "integer_accessory") and s not in switches.at_jump
+           for s in symbols_of(model.rhs)):
         raise _refuse("the equations read accessories")
+    components = Components(model)
+    if any(s.value[1] in by or components.follows(s.value[1], by, by) for s in switches.needed):
+        raise _refuse("the equations jump at times that depend on components that derivatives are by")
     for one in (*model.events, *model.stops):
         is_event = isinstance(one, Event)
         what = f"the {'event' if is_event else 'stop'} '{one.name}'"
         if isinstance(one, Event) and one.stop_after:
             raise _refuse(f"{what} ends phases")
         for target, value in one.do:
+            if target in switches.at_jump:
+                continue
+            if target in switches.needed:
+                raise _refuse(f"{what} changes when the equations jump")
             if target.value[0] != "state":
                 raise _refuse(f"{what} assigns {target.value[1]}, and no state")
             for symbol in symbols_of([value]):
                 if symbol.value[0] not in ("state", "parameter", "shared", "shared_integer") and symbol is not sym.time:
                     raise _refuse(f"the action of {what} reads {symbol.value[1]}")
-        if one.do and isinstance(one, Stop) and any(s.value[1] in by for s in symbols_of(one.values)):
+        if one in _actions(model) and isinstance(one, Stop) and any(s.value[1] in by for s in symbols_of(one.values)):
             raise _refuse(f"the time of {what} depends on components that derivatives are by")
         # where the slope jumps, that before an event is not known from its state
         if one.do and is_event and (jump := next(filter(_may_jump, walk(model.rhs)), None)) is not None:
             raise _refuse(f"{what} acts, and the equations have `{text(jump)}`, which may jump there")
     return model
+
+
+def _actions(model: Model) -> list[Any]:
+    """The events and stops that change the state."""
+    return [one for one in (*model.events, *model.stops) if any(
+        target not in model.switches.at_jump for target, _ in one.do)]
 
 
 def _may_jump(node: Node) -> bool:

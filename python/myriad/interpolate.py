@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from .errors import Error, at, refuse_masked, users_line
-from .expression import as_number, floor, make, maximum, minimum, to_real
+from .expression import as_number, continuous, make, maximum, minimum, to_real
 from .symbols import check_name
 from .table import Table
 
@@ -73,11 +73,11 @@ def interpolate(t: Operand, times: npt.ArrayLike, values: npt.ArrayLike, kind: L
     table = Table(check_name(name, "a table"), np.concatenate([head, knots, pieces.ravel()]))
     begin, end, period, step, per_step = (table[i] for i in range(5))
     if periodic:
-        x = x - period * floor((x - begin) / period)
+        x = x - period * make("floor", ((x - begin) / period,), continuous)
     elif outside == "hold":
         x = minimum(maximum(x, begin), end)
     if even:
-        row = minimum(maximum(floor((x - begin) * per_step), 0.0), float(rows - 1))
+        row = minimum(maximum(make("floor", ((x - begin) * per_step,), continuous), 0.0), float(rows - 1))
         offset = x - (begin + row * step)
     else:
         row = make("find_interval", (x,), (table, 5, rows + 1))

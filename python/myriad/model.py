@@ -6,7 +6,7 @@ from __future__ import annotations
 import copy
 import hashlib
 import inspect
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,6 +22,7 @@ from .mass_matrix import left_sides, read_mass_matrix
 from .methods import stiff
 from .parse import from_sympy, parse, parse_equations, sympy_name
 from .table import tables_of
+from .time_switches import TimeSwitches
 from .trigger import Edge, Queue, Sides, Trigger, check, edges_of, keep_values, needs_queue
 from .unit_form import unit_form
 from .units import CouplingTable, only_units, spread, together, unit_by_unit
@@ -178,6 +179,8 @@ class Model(kinds.ComponentNames):
     tables behind the other shared values; `shared_values` has what they are. `cpp()` is its header, `hash` identifies
     it."""
 
+    _reserved: Collection[str] = ()  # names that components must not get by themselves
+
     def __init__(self, equations: ByComponent | Callable[..., Any] | str, events: Event | Sequence[Event],
                  accessories: ByComponent | None, initialise: ByComponent | None, after_step: ByComponent | None,
                  finalise: ByComponent | None, generate: ByComponent | None, states: Names | None, parameters: Names,
@@ -186,6 +189,7 @@ class Model(kinds.ComponentNames):
                  triggers: Trigger | Sequence[Trigger] = (), tie_seed: int | None = None) -> None:
         self.line = users_line()
         self.hidden: frozenset[str] = frozenset()  # accessories that no user has named
+        self.jumps_to_miss: list[str] = []  # where equations and events jump and no step ends
         self._source: str | None = None
         self._declared = self._declare(states, parameters, shared, accessories)
         self._names = self._declared  # what texts may name: later also what the equations do
@@ -206,6 +210,8 @@ class Model(kinds.ComponentNames):
         self.finalise = self._assignments(finalise, "finalise")
         self.generate = self._generate(generate)
         self._collect(targets)
+        self.equations = dict(zip(targets, self.rhs))  #: the derivatives as they were given
+        self._make_jumps_exact(name, mass_matrix is not None)
         #: M of M y' = f by rows and columns; None for the identity
         self.mass_matrix = None if mass_matrix is None else read_mass_matrix(
             mass_matrix, self.states, lambda key: self._target(key, "mass_matrix").value[1], self.line)
@@ -517,6 +523,34 @@ class Model(kinds.ComponentNames):
 
     # What follows from it
 
+    def _make_jumps_exact(self, name: str | None, has_mass_matrix: bool) -> None:
+        """Lets steps end at all jumps in time that are known beforehand, by a further stop and two accessories."""
+        changing = {target for target, _ in (*self.after_step, *self.finalise)}
+        changing |= {sym.symbol("accessory", one.accessory) for one in self.summaries}
+        if has_mass_matrix:  # the slopes are others than the equations say
+            changing |= set(self.equations)
+
+        def free(wanted: str) -> str:
+            return sym.free_name(wanted, [*self.component_names, *self._reserved, *([name] if name else [])])
+
+        switches = self.switches = TimeSwitches(self.equations, [e.function for e in self.events], changing, free)
+        self.jumps_to_miss = switches.unknown
+        if not switches.at_jump:
+            return
+        if "stop_time" in self.component_names:  # which a model with stops cannot have
+            self.jumps_to_miss = switches.jumps
+            self.switches = TimeSwitches({}, [], [], free)
+            return
+        self.rhs = list(switches.equations.values())
+        made = stop(switches.following, every=0, name=free("jump"), do=switches.at_jump)
+        self.stops += self._stops([made])
+        self.initialise = switches.continued(self.initialise)
+        for one in (*self.events, *self.stops[:-1], *self.triggers):
+            if any(target in switches.needed for target, _ in one.do):
+                one.do = switches.continued(one.do)
+        self.hidden |= {switches.following.value[1], switches.between.value[1]}
+        self._collect(list(self.equations))
+
     def _collect(self, targets: list[Node]) -> None:
         """The components, in the order in which the equations, events, accessories and hooks first name them."""
         hooks = [("initialise", self.initialise), ("after_step", self.after_step), ("finalise", self.finalise)]
@@ -619,7 +653,7 @@ class Model(kinds.ComponentNames):
                         raise Error(f"event_count('{name}') in {what}{at(self.line)} names no event: there are "
                                     f"{', '.join(e.name for e in self.events) or 'none'}")
         for what, members, present in (
-                ("stops", "stop stop_time after_stop", self.stop_names),
+                ("stops", "stop stop_time", len(self.stop_names) > bool(self.switches.at_jump)),
                 ("triggers", "trigger condition after_trigger initial_value persistent queue", self.triggers)):
             taken = next((n for n in members.split() if n in kind_of), None)
             if taken is not None and present:
@@ -673,14 +707,14 @@ class Model(kinds.ComponentNames):
         """The right-hand side f by NumPy: y has one entry per state, each a number or an array; parameters and shared
         values are given by name. For looking at a model and for tests; SciPy can integrate it."""
         known = {sym.time: t, **{sym.symbol("state", n): v for n, v in zip(self.states, y)}}
-        for symbol in self._in_functions:
+        for symbol in symbols_of(self.equations.values()):
             kind, name = symbol.value
             if kind in kinds.valued and kind != "state":
                 if name not in values:
                     raise Error(f"derivatives needs a value of {name}: give it by name, {name}=...")
                 known[symbol] = values[name]
-        return np.array(np.broadcast_arrays(*evaluate(self.rhs, known), *y, t)[:len(y)])
+        return np.array(np.broadcast_arrays(*evaluate(list(self.equations.values()), known), *y, t)[:len(y)])
 
     def __repr__(self) -> str:
-        equations = [f"{side} = {text(e)}" for side, e in zip(left_sides(self)[:4], self.rhs)]
+        equations = [f"{side} = {text(e)}" for side, e in zip(left_sides(self)[:4], self.equations.values())]
         return f"<myriad model {self.name}: {'; '.join(equations)}{'; ...' if len(self.states) > 4 else ''}>"

@@ -19,7 +19,6 @@ from .sbml_math import Refused
 from .sbml_reduce import Reduction
 from .sbml_semantics import Semantics
 from .sbml_units import Units
-from .time_switches import TimeSwitches
 
 if TYPE_CHECKING:
     from .hints import Names, Path
@@ -105,8 +104,6 @@ class SbmlModel(Model):
             for one in happening.events:
                 one.do = reduction.of(one.do)
                 one.function, = reduction.of({0: one.function}).values()
-        switches = TimeSwitches(equations, happening.events, happening.initialise, semantics.new_name)
-        equations, happening.initialise = switches.equations, switches.initialise
         actions = [e for one in happening.events for e in (one.function, *one.do.values())]
         needed = set(symbols_of([*equations.values(), *defaults.values(), *actions, *happening.initialise.values()]))
         constants: dict[Any, float] = {}
@@ -123,10 +120,10 @@ class SbmlModel(Model):
                 declared.append(symbol)
         declared += reduction.parameters if reduction is not None else []
         name = _suffixed(semantics.names.values(), semantics.component_name(name))
+        self._reserved = {*semantics.names.values(), *semantics.quantities, *semantics.reactions}
         super().__init__(equations, happening.events, None, happening.initialise, None, None, None, None, declared, (),
-                         name, switches.stops)
-        self.line = users_line()
-        self.hidden, self.jumps_to_miss = frozenset(self.accessories), switches.unknown
+                         name)
+        self.line, self.hidden = users_line(), frozenset(self.accessories)
         self.constants = constants
         self.defaults: dict[str, Any] = {**self.shared_values}
         self.defaults |= {n: e for n, e in defaults.items() if n in self.states or n in self.parameters}

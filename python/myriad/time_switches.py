@@ -10,22 +10,23 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from . import expression as ex, symbols as sym
 from .expression import symbols_of, text, walk
 from .folding import (add, apply, both, choose, compare, constant, divide, is_constant, make_folded, multiply, subtract,
                       total, value_of)
-from .model import Event, Stop, stop
 from .per_phase import rebuilt
 
 if TYPE_CHECKING:
+    from .hints import Assignments
     from .options import Options
 
 _comparisons = "less", "less_equal", "greater", "greater_equal", "equal", "not_equal"
-_whole = "floor", "rint", "fmod"
-_waves = "sin", "cos"
+_remainders = "fmod", "floor_mod"
+_whole = "floor", "rint", "floor_divide", *_remainders
+_waves = {"sin": (math.pi, ex.asin), "cos": (math.pi, ex.acos), "sinpi": (1.0, ex.asin), "cospi": (1.0, ex.acos)}
 
 _one = constant(1.0)
 
@@ -39,37 +40,47 @@ def margin() -> Any:
 
 
 def note(model: Any, options: Options) -> str | None:
-    """What to know of a model that jumps at times which have no formula."""
+    """What to know of a model that jumps at times where no step ends."""
     jumps = getattr(model, "jumps_to_miss", ())
     if not jumps or options.maximum_step is not None or options.step is not None:
         return None
-    return (f"the model jumps where {' and '.join(f'`{jump}`' for jump in jumps)} changes, at times that are not known "
-            "beforehand: a step may pass over what is between two of them; give a maximum_step= shorter than that")
+    rename = ("" if "stop_time" not in model.component_names else
+              ", or call 'stop_time', which has a meaning of its own where steps end at jumps, by another name")
+    return (f"the model jumps where {' and '.join(f'`{jump}`' for jump in jumps)} changes, at times where no step "
+            f"ends: it may pass over what is between two of them; give a maximum_step= shorter than that{rename}")
 
 
 class TimeSwitches:
-    """What makes jumps exact: `equations`, by state, as they are between jumps; `stops` at the jumps; what `initialise`
-    sets. Jumps whose times have no formula are `unknown`, and stay as they are.
+    """What makes jumps of `equations`, by state, exact. `equations` then are as they are between jumps, and read the
+    accessory `between`; steps have to end at the times of the accessory `following`, where assignments `at_jump` are
+    made, as `at_start` at the start of a phase. Both are empty if nothing jumps. Jumps whose times have no formula are
+    `unknown`, and stay as they are.
 
-    Jumps may also depend on states that change at events alone: the actions of `events` then find the next jump anew.
-    If functions of events jump or come back, steps also end halfway between jumps, where the signs of these functions
-    are seen. `free_name` makes names of components."""
+    Jumps may also depend on what changes at actions alone, which then find the next jump anew: `continued`; not on
+    what is `changing`. If `functions` of events jump or come back, steps also end halfway between jumps, where the
+    signs of these functions are seen. `free_name` makes names of components."""
 
-    def __init__(self, equations: dict[Any, Any], events: Iterable[Event], initialise: dict[Any, Any],
+    def __init__(self, equations: Mapping[Any, Any], functions: Sequence[Any], changing: Collection[Any],
                  free_name: Callable[[str], str]) -> None:
-        self.equations, self.initialise = equations, initialise
-        self.stops: list[Stop] = []
+        self.at_start: dict[Any, Any] = {}
+        self.at_jump: dict[Any, Any] = {}
+        self.needed: set[Any] = set()  #: what the times of jumps follow from
         self.unknown: list[str] = []
-        self._still = {s for s, rate in equations.items() if is_constant(rate) and value_of(rate) == 0}
-        self._clocks = {s: rate for s, rate in equations.items()
-                        if s not in self._still and self._is_still(rate)}  # which measure time
+        self.jumps: list[str] = []  #: all of them, known or not
+        self._changing = changing
+        self._still = {s for s, rate in equations.items() if s not in changing and
+                       is_constant(rate) and value_of(rate) == 0}
+        self._clocks = {s: rate for s, rate in equations.items() if s not in changing and  # which measure time
+                        s not in self._still and self._is_still(rate)}
+        equations = dict(zip(equations, rebuilt(list(equations.values()), self._without_copysign)))
+        functions = rebuilt(list(functions), self._without_copysign)
         self._forms: dict[Any, Form | None] = {}
         self._times: dict[Any, list[Any] | None] = {}
         self._kinks: list[Any] = []
         self._direction = choose(compare("less", sym.t_end, sym.t_begin), constant(-1.0), constant(1.0))
         self._now = sym.time + self._direction * margin()
-        functions = [one.function for one in events]
         found = {node: self._times_of(node) for node in walk([*equations.values(), *functions]) if self._may_jump(node)}
+        self.jumps = [text(node) for node in found]
         self.unknown = [text(node) for node, times in found.items() if times is None]
         in_events = {node for node in walk(functions) if found.get(node)}
         for function in functions:
@@ -84,42 +95,45 @@ class TimeSwitches:
         if not times:
             return
         following, middle = (sym.accessory(free_name(name)) for name in ("next_jump", "between_jumps"))
+        self.following, self.between = following, middle
         between: dict[Any, Any] = {}
         for node, several in found.items():  # arguments come before what is of them
             if several is not None:
                 between[node] = self._between(node, middle, between)
         self.equations = dict(zip(equations, rebuilt(list(equations.values()), lambda node: node, between)))
         first = self._first(times)
+        self.needed = set(symbols_of([first]))
         # after the last jump: some time, as an infinite one makes NaN of k * time where k is zero
         later = sym.time + self._direction * (1.0 + ex.abs(sym.time) + 2.0 * margin())
         is_finite = compare("less", ex.abs(first), constant(math.inf))
         to_middle = 0.5 * (sym.time + choose(is_finite, first, later))
-        start = {following: to_middle if in_events else first, middle: to_middle}
-        at_jump = start
+        self.at_start = self.at_jump = {following: to_middle if in_events else first, middle: to_middle}
         if in_events:
             # functions of events are seen in the middle, and once more shortly before the jump, as they are until then
             ahead = 4.0 * (1e-10 * ex.abs(first) + 1e-13 * ex.abs(sym.t_begin))
             is_near = both(is_finite, compare("less_equal", self._direction * (first - sym.time), 2.0 * ahead))
             before = choose(is_finite, first - self._direction * ahead, first)
             is_middle = compare("equal", following, middle)
-            at_jump = {following: choose(is_near, first, choose(is_middle, before, to_middle)),
-                       middle: choose(is_middle, middle, to_middle)}
-        self.stops.append(stop(following, every=0, name=free_name("jump"), do=at_jump))
-        needed = set(symbols_of([first]))
+            self.at_jump = {following: choose(is_near, first, choose(is_middle, before, to_middle)),
+                            middle: choose(is_middle, middle, to_middle)}
 
-        def continued(do: dict[Any, Any]) -> dict[Any, Any]:
-            return {**do, **dict(zip(start, rebuilt(list(start.values()), lambda node: node, do)))}
-
-        self.initialise = continued(initialise)
-        for one in events:
-            if needed & set(one.do):
-                one.do = continued(one.do)
+    def continued(self, assignments: Assignments) -> Assignments:
+        """Assignments of a hook or action, and then the next jump after them."""
+        values = rebuilt(list(self.at_start.values()), lambda node: node, dict(assignments))
+        return [*assignments, *zip(self.at_start, values)]
 
     def _may_jump(self, node: Any) -> bool:
-        return node.op in (*_comparisons, *_whole) and self._is_of_time(node)
+        return node.op in (*_comparisons, *_whole) and node.value != ex.continuous and self._is_of_time(node)
+
+    def _without_copysign(self, node: Any) -> Any:
+        """The sign of a function of time as a choice."""
+        if node.op != "copysign" or not self._is_of_time(node.args[1]):
+            return node
+        size = ex.abs(node.args[0])
+        return choose(compare("less", node.args[1], constant(0.0)), make_folded("negate", size), size)
 
     def _is_of_time(self, node: Any) -> bool:
-        """Whether time and what changes at events alone decide an expression."""
+        """Whether time and what changes at actions alone decide an expression."""
         return self._has_time(node) and all(s is sym.time or s in self._clocks or self._is_still(s)
                                             for s in symbols_of([node]))
 
@@ -127,9 +141,9 @@ class TimeSwitches:
         return any(s is sym.time or s in self._clocks for s in symbols_of([node]))
 
     def _is_still(self, node: Any) -> bool:
-        """Whether an expression changes at events alone."""
-        return all(s is not sym.time and s.value[0] in ("parameter", "shared") or s in self._still
-                   for s in symbols_of([node]))
+        """Whether an expression changes at actions alone."""
+        kinds = "parameter", "shared", "shared_integer", "accessory", "integer_accessory"
+        return all(s.value[0] in kinds and s not in self._changing or s in self._still for s in symbols_of([node]))
 
     def _at(self, node: Any, time: Any) -> Any:
         """An expression at another time."""
@@ -145,7 +159,7 @@ class TimeSwitches:
     def _between(self, node: Any, middle: Any, known: dict[Any, Any]) -> Any:
         """What jumps, as it is between two jumps; what jumps in it is known."""
         inside = self._at(node, middle)
-        if node.op != "fmod":
+        if node.op not in _remainders:
             return inside
         value, = rebuilt([node.args[0]], lambda one: one, known)
         return subtract(value, subtract(self._at(node.args[0], middle), inside))  # less whole multiples
@@ -168,7 +182,7 @@ class TimeSwitches:
                 rest = self._rest({key: factor for key, factor in form.items() if key is not waves[0]})
                 return self._angles(waves[0], divide(_negative(rest), form[waves[0]]))
             return self._roots(form, [constant(0.0)])
-        inside = node.args[0] if node.op != "fmod" else ex.make("divide", node.args)
+        inside = node.args[0] if len(node.args) == 1 else ex.make("divide", node.args)
         form = self._form(inside)
         if form is None or _waves_of(form):
             return None
@@ -203,10 +217,11 @@ class TimeSwitches:
         angle, = wave.args
         form = self._form(angle)
         assert form is not None
-        principal = apply(ex.asin if wave.op == "sin" else ex.acos, height)
-        other = subtract(constant(math.pi if wave.op == "sin" else 0.0), principal)
-        turns = apply(ex.floor, divide(self._now_of(angle), constant(2 * math.pi)))
-        return self._roots(form, [add(one, multiply(add(turns, constant(k)), constant(2 * math.pi)))
+        half_turn, inverse = _waves[wave.op]
+        principal = multiply(constant(half_turn / math.pi), apply(inverse, height))
+        other = subtract(constant(half_turn if wave.op in ("sin", "sinpi") else 0.0), principal)
+        turns = apply(ex.floor, divide(self._now_of(angle), constant(2 * half_turn)))
+        return self._roots(form, [add(one, multiply(add(turns, constant(k)), constant(2 * half_turn)))
                                   for one in (principal, other) for k in (-1.0, 0.0, 1.0)])
 
     # -- Sums ----------------------------------------------------------------------------------------------------------
@@ -253,7 +268,7 @@ class TimeSwitches:
                 return None
             by = second.get(_one, constant(0.0))
             return {key: of(factor, by) for key, factor in first.items()}
-        if node.op == "fmod":
+        if node.op in _remainders:
             return _sum(first, {ex.make("subtract", (node.args[0], node)): constant(-1.0)})
         if node.op in _whole or node.op in _waves and not _waves_of(first):
             return {node: _one}

@@ -312,7 +312,8 @@ class UnitForm(Writer):
             acting = [(str(stop.name), self._statements_of_each(system, own))
                       for stop, (system, own) in zip(model.stops, self.at_stops) if system or own]
             lines = self.branches("stop", acting, len(model.stops))
-            yield self._hook("after_stop", f"[[maybe_unused]] int unit, [[maybe_unused]] int stop, int, {lane}", lines)
+            which = "int stop" if len(model.stops) > 1 else "int"
+            yield self._hook("after_stop", f"[[maybe_unused]] int unit, {which}, int, {lane}", lines)
         if model.generate:
             writer = copy.copy(self)
             writer.names, writer._in_generate = self.names.in_generate(), True

@@ -18,7 +18,6 @@ from .expression import evaluate, symbols_of
 from .folding import compare, constant, is_constant, value_of
 from .interpolate import interpolate
 from .model import Event, Model, event
-from .time_switches import TimeSwitches
 from .xpp_formula import Names, NoFormula, formula, words
 
 if TYPE_CHECKING:
@@ -353,11 +352,9 @@ class XppModel(Model):
         equations = {states[n]: _in_line(line, text, names) for n, (line, text) in parts.equations.items()}
         events = [self._event(one, number, names, states, parameters) for number, one in enumerate(parts.events, 1)]
         name = self._component(re.sub("_+", "_", re.sub(r"\W", "_", name.lower())).strip("_") or "model")
-        switches = TimeSwitches(equations, events, {}, self._component)
-        super().__init__(switches.equations, events, None, switches.initialise, None, None, None, None,
-                         list(parameters.values()), (), name, switches.stops)
-        self.hidden, self.jumps_to_miss = frozenset(self.accessories), switches.unknown
-        self.line = users_line()
+        self._reserved = {*self._taken, *self._ids}
+        super().__init__(equations, events, None, None, None, None, None, None, list(parameters.values()), (), name)
+        self.line, self.hidden = users_line(), frozenset(self.accessories)
         self.defaults: dict[str, Any] = {**self.shared_values}
         for n, symbol in states.items():
             self.defaults[symbol.value[1]] = constant(0.0)

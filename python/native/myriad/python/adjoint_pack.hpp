@@ -37,7 +37,8 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 /// Instances of an adjoint call that lanes go through together. Computes the values of quantities or the gradient.
 /// Besides what transposed_step.hpp asks for, `Adjoint` has n_quantity `quantities` of time, state and parameters, and
 /// `transposed_quantities`; and n_action actions of events and stops: `act` gives the state after one, `transposed_act`
-/// and `slope_of_event` have derivatives by time behind the others. A record at the time of an action has the state
+/// and `slope_of_event` have derivatives by time behind the others. `between_jumps` is the accessory that tells its
+/// equations the time of the middle between two jumps, negative if they have none. A record at the time of an action has the state
 /// before it.
 template <class Adjoint, class Method, class S, bool wants_values>
 class adjoint_pack {
@@ -91,6 +92,10 @@ private:
     transposed_step<Adjoint, Method, S> step_;
     bool interpolates_ = false;
 
+    /// Lets the equations be those between the jumps that are before and after the step.
+    void choose_branches() {
+        if constexpr (Adjoint::between_jumps >= 0) p_.accessory[Adjoint::between_jumps] = fma(S(R(0.5)), h_, t_);
+    }
     /// Reads a record of lane i.
     void read(int i, std::int64_t record) {
         const std::int64_t cell = record * call_.size + instance_[i];
@@ -166,6 +171,7 @@ private:
         }
         y_ = before_action<n_action>();
         h_ = t_end_ - t_;
+        choose_branches();
         return some;
     }
 

@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: MIT
+"""Equations of traced models that jump in time: no step passes over a jump. test_sbml.py and test_xpp.py have models
+from files."""
+
+import numpy as np
+import pytest
+
+import myriad as my
+from myriad import where
+from myriad.unit_form import unit_form
+
+x, clock = my.states("x clock")
+k, T = my.parameters("k T")
+on = my.accessory("on")
+t = my.time
+rates = np.array([0.1, 0.2])
+tight = {"rtol": 1e-10, "atol": 1e-12}
+
+
+def after(starts, end, length=1.0, rate=rates):
+    """What is left at the end of infusions at the rate 1 from some times on."""
+    starts = np.asarray(starts, float)[:, None]
+    return ((np.exp(-rate * (end - starts - length)) - np.exp(-rate * (end - starts))) / rate).sum(axis=0)
+
+
+def infused(on, **more):
+    return my.model({x: where(on, 1.0, 0.0) - k * x}, **more)
+
+
+def test_a_short_pulse_is_not_passed_over():
+    starts = np.linspace(1, 90, 50)
+    model = my.model({x: where((t > T) & (t < T + 1e-3), 1000.0, 0.0) - 0.01 * x})
+    for begin, end in ((0, 100), (100, 0)):
+        run = my.solve(model, {T: starts}, start={x: 0}, time=(begin, end), rtol=1e-8)
+        at_end = 1e5 * (np.exp(-0.01 * (end - starts - 1e-3)) - np.exp(-0.01 * (end - starts)))
+        np.testing.assert_allclose(run["x"], np.sign(end - begin) * at_end, rtol=1e-6)
+        assert run.steps("accepted").max() < 100
+
+
+@pytest.mark.parametrize("wave", [
+    t % 24 < 12, (t // 12) % 2 == 0, my.ceil(t / 12) % 2 == 1, my.trunc(t / 12) % 2 == 0, my.fmod(t, 24.0) < 12,
+    my.round(t / 12 - 0.5) % 2 == 0, my.sin(np.pi * t / 12) > 0, my.sinpi(t / 12) > 0, my.cospi(t / 12 - 0.5) > 0,
+    my.copysign(1.0, my.sinpi(t / 12)) > 0, abs(t % 24 - 6) < 6])
+def test_a_wave_is_right_however_it_is_written(wave):
+    run = my.solve(infused(wave), {k: rates}, start={x: 0}, time=(0, 120), **tight)
+    np.testing.assert_allclose(run["x"], after(24 * np.arange(5), 120, 12.0), rtol=1e-9)
+
+
+@pytest.mark.parametrize("options, rtol", [
+    ({"method": "rodas_5p", **tight}, 1e-9), ({"interpreted": True, **tight}, 1e-9),
+    ({"method": "verner_7", **tight}, 1e-9), ({"method": "runge_kutta_4", "step": 0.7}, 1e-4),
+    ({"precision": "float", "rtol": 1e-5}, 1e-4)])
+def test_all_methods_and_kinds_of_numbers_stop_at_jumps(options, rtol):
+    run = my.solve(infused((t > T) & (t < T + 1)), {k: rates, T: 9.0}, start={x: 0}, time=(0, 20), **options)
+    np.testing.assert_allclose(run["x"], after([9.0], 20), rtol=rtol)
+
+
+def test_jumps_go_on_where_a_phase_goes_on():
+    model = infused((t > T) & (t < T + 1))
+    parts = my.solve(model, {k: rates, T: 9.5}, start={x: 0}, time=(0, 20), phases=5, phase_length=4, carry_on=True,
+                     **tight)
+    np.testing.assert_allclose(parts["x"], after([9.5], 20), rtol=1e-9)
+
+
+@pytest.mark.parametrize("model, starts", [
+    (infused(t < on + 1, accessories={on: -9.0}, stops=my.stop(5, every=10, do={on: t})), [5, 15, 25, 35]),
+    (infused((t > on) & (t < on + 1), accessories={on: None}, initialise={on: T + 1}, stops=my.stop(20, do={on: 25.0})),
+     [10, 25]),
+    (infused((t >= on) & (t < on + 1), accessories={on: -9.0}, triggers=my.trigger(
+        (t - 3) % 10 < 1, delay=2.0, do={on: t})), [5, 15, 25, 35]),
+    (my.model({x: where(clock < 1, 1.0, 0.0) - k * x, clock: 1.0}, events=my.event(clock - 10, do={clock: 0.0})),
+     [0, 10, 20, 30])])
+def test_actions_find_the_next_jump_anew(model, starts):
+    given = {T: 9.0} if "T" in model.parameters else {}
+    run = my.solve(model, {k: rates, **given}, start=dict.fromkeys(model.states, 0), time=(0, 38), **tight)
+    np.testing.assert_allclose(run["x"], after(starts, 38), rtol=1e-8)
+    assert not set(run.accessories) & {"next_jump", "between_jumps"}
+
+
+def test_jumps_that_have_no_formula_are_noted():
+    model = infused(t * t < 4)
+    assert model.jumps_to_miss == ["time * time < 4"] and not model.stops
+    run = my.solve(model, {k: rates}, start={x: 0}, time=(0, 9))
+    assert run.report.notes == [
+        "the model jumps where `time * time < 4` changes, at times where no step ends: it may pass over what is "
+        "between two of them; give a maximum_step= shorter than that"]
+    assert not my.solve(model, {k: rates}, start={x: 0}, time=(0, 9), maximum_step=0.5).report.notes
+
+
+@pytest.mark.parametrize("name", ["stop", "stop_time"])
+def test_a_parameter_may_have_the_name_of_a_hook_of_stops(name):
+    until = my.parameter(name)
+    model = infused(t < until)
+    run = my.solve(model, {k: rates, until: 1.0}, start={x: 0}, time=(0, 20), **tight)
+    np.testing.assert_allclose(run["x"], after([0.0], 20), rtol=1e-8)
+    if name != "stop":
+        assert "or call 'stop_time', which has" in run.report.notes[0]
+    else:
+        units = my.units(40)
+        a, = units.states("a")
+        form = unit_form(my.model({a: [where(t < until, 1.0, 0.0) - k * a[i] for i in range(40)]}))
+        assert form is not None and "int stop" not in form.source("ring")
+
+
+def test_what_does_not_jump_in_time_has_no_stops():
+    times = np.arange(9.0)
+    for smooth in (my.interpolate(t, times, times % 2), where(my.parameter("mode") > 1, t, -t),
+                   my.interpolate(t, times, times % 2, outside="periodic", kind="cubic"),
+                   where(x > 0.5, 1.0, 0.0), my.sin(t)):
+        model = my.model({x: smooth - k * x})
+        assert not model.stops and not model.accessories
+
+
+def test_names_of_users_stay_theirs():
+    own = my.accessory("next_jump")
+    model = my.model({x: where(t > T, 1.0, 0.0) - k * x + own}, accessories={own: 0.5}, name="jump")
+    assert [s.name for s in model.stops] != ["jump"] and "next_jump" not in model.hidden
+    run = my.solve(model, {k: rates, T: 100.0}, start={x: 0}, time=(0, 1), **tight)
+    np.testing.assert_allclose(run["x"], 0.5 * (1 - np.exp(-rates)) / rates, rtol=1e-9)
+
+
+def test_a_model_shows_its_equations_as_they_were_written():
+    model = infused((t > T) & (t < T + 1))
+    assert "where(time > T and time < T + 1, 1, 0) - k * x" in repr(model)
+    np.testing.assert_array_equal(model.derivatives(np.array([1.0, 2.5]), [0.5], T=2.0, k=2.0), [[-1.0, 0.0]])
+    assert "struct traced" in model.cpp("traced") and "after_stop" in model.cpp()
+
+
+def test_derivatives_by_the_time_of_a_jump_are_those_of_a_closed_form():
+    run = my.solve(infused((t > T) & (t < T + 1)), {k: rates, T: 9.0}, start={x: 0}, time=(0, 20),
+                   sensitivities=[T, k], **tight)
+    h = 1e-6
+    np.testing.assert_allclose(run["x_by_T"], (after([9 + h], 20) - after([9 - h], 20)) / (2 * h), rtol=1e-7)
+    np.testing.assert_allclose(run["x_by_k"], (after([9.0], 20, rate=rates + h) - after([9.0], 20, rate=rates - h)) /
+                               (2 * h), rtol=1e-7)
+
+
+@pytest.mark.parametrize("method", ["tsitouras_5", pytest.param("rodas_5p", marks=pytest.mark.long)])
+def test_an_adjoint_goes_back_through_jumps(method):
+    height = my.parameter("height")
+    model = my.model({x: height * where(t % 10 < 1, 1.0, 0.0) - k * x * x}, events=my.event(x - 0.9, do={x: 0.5 * x}),
+                     stops=my.stop(5.5, do={x: x + height}))
+    at = np.array([[0.1, 1.0, 0.0], [0.2, 1.5, 0.3]])
+    call = dict(by=[k, height, x], of=x, time=(0, 24), samples=[0.5, 10.5, 24.0], method=method, device="cpu",
+                sensitivity_control=False, **tight)
+    found, expected = (my.batched(model, adjoint=adjoint, **call).vjp(at, np.ones((2, 3, 1)))
+                       for adjoint in (True, False))
+    np.testing.assert_allclose(found[0], expected[0], rtol=1e-12)
+    np.testing.assert_allclose(found[1], expected[1], rtol=1e-8)
+
+
+@pytest.mark.parametrize("model, why", [
+    (infused((t > T) & (t < T + 1)), "jump at times that depend on components that derivatives are by"),
+    (my.model({x: where(clock < 1, 1.0, 0.0) - k * x, clock: T}), "jump at times that depend"),
+    (my.model({x: where(clock < 1, 1.0, 0.0) - k * T * x, clock: 1.0},
+              events=my.event(x - 10, name="hit", do={clock: 0.0})),
+     "the event 'hit' changes when the equations jump")])
+def test_an_adjoint_refuses_jumps_at_times_that_move(model, why):
+    with pytest.raises(my.Error, match=f"{why}.*leave out adjoint=True"):
+        my.batched(model, by=[k, T], of=x, start={"x": 0, **({"clock": 0} if "clock" in model.states else {})},
+                   time=(0, 9), adjoint=True)
+
+
+def test_pulses_of_coupled_units_are_exact_and_stay_units():
+    units = my.units(40)
+    a, = units.states("a")
+    start = units.parameter("start")
+    model = my.model({a: [where((t > start[i]) & (t < start[i] + 1), 1.0, 0.0) - k * a[i] for i in range(40)]})
+    assert unit_form(model) is not None
+    run = my.solve(model, {k: rates, **{start[i]: 1.0 + i / 8 for i in range(40)}}, start={a: 0}, time=(0, 20), **tight)
+    for i in (0, 17, 39):
+        np.testing.assert_allclose(run[f"a_{i}"], after([1 + i / 8], 20), rtol=1e-9)
