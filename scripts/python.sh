@@ -23,7 +23,8 @@ installed.
 Options:
   --required  exit status 1 instead of 77
   --others    also tests of work with other packages (JAX, Dask, SALib and more), whose download takes minutes
-  --full      an argument of pytest: also tests that are marked as long
+  --full      an argument of pytest: also tests that are marked as long; the wheel is as users get it, else with less
+              optimisation
   --all       an argument of pytest: all models for all GPUs by NVRTC, which takes minutes
   --help      this text
 END
@@ -31,11 +32,12 @@ END
 
 missing_status=77
 extras=(test)
+if has_command nvidia-smi; then extras+=(cuda); fi
 while (($#)); do
     case $1 in
         --help | -h) usage; exit 0 ;;
         --required) missing_status=1 ;;
-        --others) extras+=(test-others) ;;
+        --others) extras+=(cuda test-others) ;;
         *) break ;;
     esac
     shift
@@ -50,17 +52,21 @@ import sys, tomllib
 extras = tomllib.load(open("pyproject.toml", "rb"))["project"]["optional-dependencies"]
 print(*(package for extra in sys.argv[1:] for package in extras[extra]), sep="\n")' "${extras[@]}")
 if ! { python3 -m venv "$environment" &&
-    "${pip[@]}" install scikit-build-core nanobind numpy nvidia-cuda-nvrtc pytest-xdist "${packages[@]}"; } \
+    "${pip[@]}" install --no-compile scikit-build-core nanobind numpy pytest-xdist "${packages[@]}"; } \
     >"$environment.log" 2>&1; then
     tail -n 5 "$environment.log" >&2 || true
     say "The Python package was NOT tested: what it is built and tested with could not be installed ($environment.log)."
     exit "$missing_status"
 fi
 started=$SECONDS
-quietly build/python-wheel.log "${pip[@]}" wheel --no-build-isolation --no-deps --wheel-dir "$wheels/linux" .
+definitions=()
+if [[ " $* " != *" --full "* ]]; then
+    definitions=(-Ccmake.define.CMAKE_CXX_FLAGS_RELEASE="-O1 -DNDEBUG -DMYRIAD_OUT_OF_LINE")
+fi
+quietly build/python-wheel.log "${pip[@]}" wheel "${definitions[@]}" --no-build-isolation --no-deps --wheel-dir "$wheels/linux" .
 PATH=$PWD/$environment/bin:$PATH quietly build/python-auditwheel.log \
     "$environment/bin/python" -m auditwheel repair --wheel-dir "$wheels" "$wheels"/linux/*.whl
-"${pip[@]}" install --no-deps "$wheels"/*.whl
+"${pip[@]}" install --no-compile --no-deps "$wheels"/*.whl
 say "Built and installed $(basename "$wheels"/*.whl) in $(duration $((SECONDS - started)))"
 "$environment/bin/ruff" check python
 "$environment/bin/mypy" --no-error-summary -p myriad

@@ -25,7 +25,7 @@ Steps that run without options: what shows that a build is right.
 With --full, python runs all its tests, also those that take long and those with other packages, JAX and Dask among
 them, and there are these steps. All run in the order ci, programs, python, and then as they stand here.
   programs  in the build of ci: examples, benchmarks, validation, projects outside that use the library, every public
-            header by itself, compile times
+            header by itself, what must not compile, compile times, the documents
   docs      the documentation as a site: warnings are errors, links within it lead somewhere (skipped where Sphinx
             cannot be installed)
   cuda      the tests' kernels compile for one GPU and as PTX, some within limits of registers and stack; a program with
@@ -97,7 +97,7 @@ failed=0
 summary=()
 
 # The tests of preset ci that belong to step programs, by their labels.
-programs='^(benchmarks|compile_time|derivatives|examples|headers|install|validation)$'
+programs='^(benchmarks|compile_time|derivatives|docs|examples|headers|install|must_not_compile|validation)$'
 
 # build STEP PRESET: sets `built`.
 build() {

@@ -2,6 +2,7 @@
 """Shared by the tests: a cache of their own, and models whose solutions are known."""
 
 import os
+import shlex
 import signal
 import tempfile
 
@@ -18,6 +19,17 @@ if os.environ.get("MYRIAD_TEST_DEVICE") != "cuda":  # as in the tests of the C++
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 import myriad as my  # noqa: E402
+
+_compiler = my.compiler.find_compiler()
+
+
+@pytest.fixture(autouse=True)
+def calls_instead_of_inlining(request, monkeypatch):
+    """Kernels are compiled in about half of the time, with the same results, unless a module is about how users get
+    them: `pytestmark = pytest.mark.as_users_compile`."""
+    if _compiler is not None and request.node.get_closest_marker("as_users_compile") is None:
+        monkeypatch.setenv("MYRIAD_CXX", shlex.join((*_compiler.command, "-DMYRIAD_OUT_OF_LINE")))
+
 
 OSCILLATOR = """
 #include <myriad/model.hpp>

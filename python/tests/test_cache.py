@@ -17,6 +17,8 @@ from myriad import cache, compiler
 
 from conftest import OSCILLATOR
 
+pytestmark = pytest.mark.as_users_compile
+
 SCRIPT = f"""
 import time
 import myriad as my

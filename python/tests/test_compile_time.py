@@ -17,7 +17,7 @@ from myriad import compiler, nvrtc
 from myriad.cpp import work
 from test_gpu import network
 
-pytestmark = pytest.mark.long
+pytestmark = [pytest.mark.long, pytest.mark.as_users_compile]
 gxx = shutil.which("g++")
 reference = pathlib.Path(__file__).resolve().parents[2] / "tests" / "compile_time" / "reference.cpp"
 

@@ -181,6 +181,7 @@ def test_polynomials_of_symbols_and_vectors_are_taken():
     assert model.derivatives(0, [2.0, -1.0]).tolist() == [13.0, 3.0]
 
 
+@pytest.mark.as_users_compile
 def test_a_compiler_may_have_arguments_and_one_that_calls_it(monkeypatch):
     from myriad import compiler
 

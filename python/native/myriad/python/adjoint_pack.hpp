@@ -38,8 +38,8 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 /// Besides what transposed_step.hpp asks for, `Adjoint` has n_quantity `quantities` of time, state and parameters, and
 /// `transposed_quantities`; and n_action actions of events and stops: `act` gives the state after one, `transposed_act`
 /// and `slope_of_event` have derivatives by time behind the others. `between_jumps` is the accessory that tells its
-/// equations the time of the middle between two jumps, negative if they have none. A record at the time of an action has the state
-/// before it.
+/// equations the time of the middle between two jumps, negative if they have none. A record at the time of an action
+/// has the state before it.
 template <class Adjoint, class Method, class S, bool wants_values>
 class adjoint_pack {
     using R = real_of<S>;
