@@ -35,8 +35,8 @@ def assert_equal(found, expected, rtol=1e-9):
 
 
 # one of each kind: with Hermite's interpolant, or their own, with slopes at the end or extra stages; stiff ones
-@pytest.mark.parametrize("method", ["tsitouras_5", "rosenbrock_23", *(pytest.param(method, marks=pytest.mark.long)
-                                    for method in ("runge_kutta_4", "cash_karp", "verner_7", "rodas_5p"))])
+@pytest.mark.parametrize("method", ["tsitouras_5", *(pytest.param(method, marks=pytest.mark.long) for method in (
+    "rosenbrock_23", "runge_kutta_4", "cash_karp", "verner_7", "rodas_5p"))])
 def test_an_adjoint_has_the_derivatives_of_the_same_steps(method):
     options = {"step": 0.01} if method == "runge_kutta_4" else {"rtol": 1e-5, "atol": 1e-5}
     assert_equal(*both(driven, sets, of=[x, y], time=(0, 2), samples=times, method=method, **functions, **options))
@@ -83,6 +83,7 @@ def test_stiff_gradients_are_those_of_controlled_sensitivities():
     np.testing.assert_allclose(found, expected, rtol=1e-7)
 
 
+@pytest.mark.long
 def test_a_stiff_network_that_needs_pivots_has_the_gradient_of_differences():
     n = 6
     substances, rates = my.states([f"s{i}" for i in range(n)]), my.parameters([f"k{i}" for i in range(n)])

@@ -66,6 +66,7 @@ def test_what_has_no_description_or_type_is_found(tmp_path, file, before, after,
     assert done.returncode == 1 and said in done.stdout
 
 
+@pytest.mark.long
 def test_a_type_checker_finds_what_is_wrong_in_a_program(tmp_path):
     mypy = pytest.importorskip("mypy.api")
     program = tmp_path / "program.py"

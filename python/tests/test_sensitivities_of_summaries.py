@@ -24,7 +24,7 @@ def by_differences(f, at, d=1e-3):
     return np.stack(found, axis=-1)
 
 
-@pytest.mark.parametrize("method", ["tsitouras_5", "rodas_5p"])
+@pytest.mark.parametrize("method", ["tsitouras_5", pytest.param("rodas_5p", marks=pytest.mark.long)])
 def test_extrema_and_integrals_of_smooth_solutions_have_derivatives(method):
     # x = x0 cos(w t) + v0 / w sin(w t), w = sqrt(k): the largest value inside, the smallest at the end.
     spring = my.model({x: v, v: -k * x}, accessories={
@@ -80,6 +80,7 @@ def test_extrema_and_integrals_that_events_cut_have_derivatives():
         np.testing.assert_allclose(run[accessory], alone[accessory], rtol=1e-9)
 
 
+@pytest.mark.long
 def test_summaries_of_phases_that_events_begin_and_end_have_derivatives():
     ball = my.model({x: v, v: -g}, accessories={**summaries, when: my.phase_maximum(x)},
                     events=my.event(x, direction="falling", do={v: -r * v, my.end_phase: True}), name="ball_phases")
@@ -127,7 +128,7 @@ def test_a_phase_that_a_stop_ends_has_the_derivative_of_its_time():
     np.testing.assert_allclose(run.sensitivity[x][0], [-1.5 * value, -0.5 * value], rtol=1e-8)
 
 
-@pytest.mark.parametrize("method", ["tsitouras_5", "rodas_5p"])
+@pytest.mark.parametrize("method", ["tsitouras_5", pytest.param("rodas_5p", marks=pytest.mark.long)])
 def test_the_ends_of_the_time_domain_have_derivatives_through_an_event(method):
     # x' = cos(t), which at c falls to r x + t / 10; v' = x.
     c = my.parameter("c")

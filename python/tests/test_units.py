@@ -144,7 +144,8 @@ def test_units_that_are_alike_are_written_as_one_unit_for_gpus():
         np.testing.assert_allclose(other[name], one[name], rtol=1e-11, atol=1e-11)
 
 
-@pytest.mark.parametrize("precision, allowed", [("double", 1e-11), ("float", 1e-4)])
+@pytest.mark.parametrize("precision, allowed", [("double", 1e-11),
+                                                pytest.param("float", 1e-4, marks=pytest.mark.long)])
 def test_matrices_of_units_are_the_couplings_of_cpp(precision, allowed):
     """Of every form; one matrix for two sums is declared once."""
     units = my.units(n)
