@@ -533,18 +533,20 @@ class Model(kinds.ComponentNames):
         def free(wanted: str) -> str:
             return sym.free_name(wanted, [*self.component_names, *self._reserved, *([name] if name else [])])
 
-        switches = self.switches = TimeSwitches(self.equations, [e.function for e in self.events], changing, free)
+        switches = self.switches = TimeSwitches(self.equations, [quantity for _, quantity in self.observed],
+                                                [e.function for e in self.events], changing, free)
         self.jumps_to_miss = switches.unknown
         if not switches.at_jump:
             return
         if "stop_time" in self.component_names:  # which a model with stops cannot have
             self.jumps_to_miss = switches.jumps
-            self.switches = TimeSwitches({}, [], [], free)
+            self.switches = TimeSwitches({}, [], [], [], free)
             return
         self.rhs = list(switches.equations.values())
+        self.observed = [(name, quantity) for (name, _), quantity in zip(self.observed, switches.quantities)]
         made = stop(switches.following, every=0, name=free("jump"), do=switches.at_jump)
         self.stops += self._stops([made])
-        self.initialise = switches.continued(self.initialise)
+        self.initialise = switches.continued(self.initialise, begins=True)
         for one in (*self.events, *self.stops[:-1], *self.triggers):
             if any(target in switches.needed for target, _ in one.do):
                 one.do = switches.continued(one.do)

@@ -4,6 +4,9 @@ parts and remainders of time.
 
 Steps end at each of these times, so that no step passes over what happens between two of them. Between two of them
 everything that jumps keeps the value that it has halfway.
+
+At a jump, what is computed of the time may round to either side of it. So what comes next is asked a little ahead of
+the time: by the rounding errors of what is compared, which depend on its summands, and on the precision of the run.
 """
 
 from __future__ import annotations
@@ -31,6 +34,7 @@ _waves = {"sin": (math.pi, ex.asin), "cos": (math.pi, ex.acos), "sinpi": (1.0, e
 _one = constant(1.0)
 
 Form = dict[Any, Any]  #: a sum: coefficients by what they multiply, which is 1, the time, or a function of time
+Time = tuple[Any, Any]  #: a time, and how far it has to be ahead to be still to come
 
 
 def margin() -> Any:
@@ -50,18 +54,25 @@ def note(model: Any, options: Options) -> str | None:
             f"ends: it may pass over what is between two of them; give a maximum_step= shorter than that{rename}")
 
 
+def _unit_roundoff() -> Any:
+    """The largest relative error of rounding in the precision of a run."""
+    one = 1.0 + ex.abs(sym.t_begin)
+    return choose(compare("equal", one * (1.0 + 1e-10), one), constant(2.0**-24), constant(2.0**-53))
+
+
 class TimeSwitches:
-    """What makes jumps of `equations`, by state, exact. `equations` then are as they are between jumps, and read the
-    accessory `between`; steps have to end at the times of the accessory `following`, where assignments `at_jump` are
-    made, as `at_start` at the start of a phase. Both are empty if nothing jumps. Jumps whose times have no formula are
-    `unknown`, and stay as they are.
+    """What makes jumps of `equations`, by state, and of the `quantities` of summaries exact. They then are as they are
+    between jumps, and read the accessory `between`. Steps have to end at the times of the accessory `following`, where
+    assignments `at_jump` are made, as `at_start` at the start of a phase; both are empty if nothing jumps. Jumps whose
+    times have no formula are `unknown`, and stay as they are.
 
     Jumps may also depend on what changes at actions alone, which then find the next jump anew: `continued`; not on
     what is `changing`. If `functions` of events jump or come back, steps also end halfway between jumps, where the
     signs of these functions are seen. `free_name` makes names of components."""
 
-    def __init__(self, equations: Mapping[Any, Any], functions: Sequence[Any], changing: Collection[Any],
-                 free_name: Callable[[str], str]) -> None:
+    def __init__(self, equations: Mapping[Any, Any], quantities: Sequence[Any], functions: Sequence[Any],
+                 changing: Collection[Any], free_name: Callable[[str], str]) -> None:
+        self.equations, self.quantities = dict(equations), list(quantities)
         self.at_start: dict[Any, Any] = {}
         self.at_jump: dict[Any, Any] = {}
         self.needed: set[Any] = set()  #: what the times of jumps follow from
@@ -72,14 +83,13 @@ class TimeSwitches:
                        is_constant(rate) and value_of(rate) == 0}
         self._clocks = {s: rate for s, rate in equations.items() if s not in changing and  # which measure time
                         s not in self._still and self._is_still(rate)}
-        equations = dict(zip(equations, rebuilt(list(equations.values()), self._without_copysign)))
+        states, jumping = list(equations), rebuilt([*equations.values(), *quantities], self._without_copysign)
         functions = rebuilt(list(functions), self._without_copysign)
         self._forms: dict[Any, Form | None] = {}
-        self._times: dict[Any, list[Any] | None] = {}
+        self._times: dict[Any, list[Time] | None] = {}
         self._kinks: list[Any] = []
         self._direction = choose(compare("less", sym.t_end, sym.t_begin), constant(-1.0), constant(1.0))
-        self._now = sym.time + self._direction * margin()
-        found = {node: self._times_of(node) for node in walk([*equations.values(), *functions]) if self._may_jump(node)}
+        found = {node: self._times_of(node) for node in walk([*jumping, *functions]) if self._may_jump(node)}
         self.jumps = [text(node) for node in found]
         self.unknown = [text(node) for node, times in found.items() if times is None]
         in_events = {node for node in walk(functions) if found.get(node)}
@@ -90,7 +100,7 @@ class TimeSwitches:
                 found[crossing] = self._times_of(crossing)
                 in_events.add(crossing)
         found |= {kink: self._times_of(kink) for kink in self._kinks}
-        times = [t for t in dict.fromkeys(t for several in found.values() for t in several or ())
+        times = [(t, ahead) for t, ahead in dict.fromkeys(one for several in found.values() for one in several or ())
                  if not is_constant(t) or math.isfinite(value_of(t))]
         if not times:
             return
@@ -100,11 +110,12 @@ class TimeSwitches:
         for node, several in found.items():  # arguments come before what is of them
             if several is not None:
                 between[node] = self._between(node, middle, between)
-        self.equations = dict(zip(equations, rebuilt(list(equations.values()), lambda node: node, between)))
+        jumping = rebuilt(jumping, lambda node: node, between)
+        self.equations, self.quantities = dict(zip(states, jumping)), jumping[len(states):]
         first = self._first(times)
         self.needed = set(symbols_of([first]))
         # after the last jump: some time, as an infinite one makes NaN of k * time where k is zero
-        later = sym.time + self._direction * (1.0 + ex.abs(sym.time) + 2.0 * margin())
+        later = sym.time + self._direction * (1.0 + ex.abs(sym.time))
         is_finite = compare("less", ex.abs(first), constant(math.inf))
         to_middle = 0.5 * (sym.time + choose(is_finite, first, later))
         self.at_start = self.at_jump = {following: to_middle if in_events else first, middle: to_middle}
@@ -117,9 +128,13 @@ class TimeSwitches:
             self.at_jump = {following: choose(is_near, first, choose(is_middle, before, to_middle)),
                             middle: choose(is_middle, middle, to_middle)}
 
-    def continued(self, assignments: Assignments) -> Assignments:
-        """Assignments of a hook or action, and then the next jump after them."""
-        values = rebuilt(list(self.at_start.values()), lambda node: node, dict(assignments))
+    def continued(self, assignments: Assignments, begins: bool = False) -> Assignments:
+        """Assignments of a hook or action, and then the next jump after them. `begins`: they begin a phase, at a time
+        that they may assign."""
+        known = dict(assignments)
+        if begins and sym.t_begin in known:
+            known[sym.time] = known[sym.t_begin]
+        values = rebuilt(list(self.at_start.values()), lambda node: node, known)
         return [*assignments, *zip(self.at_start, values)]
 
     def _may_jump(self, node: Any) -> bool:
@@ -150,10 +165,10 @@ class TimeSwitches:
         clocks = {s: s + rate * (time - sym.time) for s, rate in self._clocks.items()}
         return rebuilt([node], lambda one: one, {sym.time: time, **clocks})[0]
 
-    def _first(self, times: list[Any]) -> Any:
+    def _first(self, times: list[Time]) -> Any:
         """The first of some times that is still to come, infinite if there is none."""
-        to_come = [choose(compare("greater", self._direction * (t - self._now), constant(0.0)), self._direction * t,
-                          constant(math.inf)) for t in times]
+        to_come = [choose(compare("greater", self._direction * (t - sym.time), ahead), self._direction * t,
+                          constant(math.inf)) for t, ahead in times]
         return self._direction * functools.reduce(lambda a, b: ex.make("min", (a, b)), to_come)
 
     def _between(self, node: Any, middle: Any, known: dict[Any, Any]) -> Any:
@@ -166,13 +181,13 @@ class TimeSwitches:
 
     # -- When it jumps -------------------------------------------------------------------------------------------------
 
-    def _times_of(self, node: Any) -> list[Any] | None:
+    def _times_of(self, node: Any) -> list[Time] | None:
         """Some times, among them the last jump before now and the next one; None if they have no formula."""
         if node not in self._times:
             self._times[node] = self._found_times_of(node)
         return self._times[node]
 
-    def _found_times_of(self, node: Any) -> list[Any] | None:
+    def _found_times_of(self, node: Any) -> list[Time] | None:
         if node.op in _comparisons:
             form = self._form(ex.make("subtract", node.args))
             waves = _waves_of(form)
@@ -187,11 +202,32 @@ class TimeSwitches:
         if form is None or _waves_of(form):
             return None
         shift = 0.5 if node.op == "rint" else 0.0
-        below = apply(ex.floor, subtract(self._now_of(inside), constant(shift)))
+        below = apply(ex.floor, subtract(self._now_of(inside, form), constant(shift)))
         return self._roots(form, [add(below, constant(shift + k)) for k in (-1, 0, 1)])
 
-    def _now_of(self, node: Any) -> Any:
-        return self._at(node, self._now)
+    def _now_of(self, node: Any, own: Form | None = None) -> Any:
+        """What an expression is right after now, as far as rounding lets tell. `own`: itself as a sum, if its size
+        decides what jumps."""
+        forms = [form for form in (own, *map(self._compared, walk([node]))) if form is not None]
+        if not forms:
+            return node
+        ahead = functools.reduce(lambda a, b: ex.make("max", (a, b)), [self._ahead(form) for form in forms])
+        return self._at(node, sym.time + self._direction * ahead)
+
+    def _compared(self, node: Any) -> Form | None:
+        """The sum whose size decides what something that jumps is."""
+        if not self._may_jump(node):
+            return None
+        return self._form(ex.make("subtract", node.args) if node.op in _comparisons else node.args[0]
+                          if len(node.args) == 1 else ex.make("divide", node.args))
+
+    def _ahead(self, form: Form) -> Any:
+        """The error of the time at which a sum has some value, by rounding; more than zero, so that one is ahead of a
+        jump at zero, too."""
+        size = total([ex.abs(self._term(factor, key)) for key, factor in form.items() if key is not sym.time])
+        if (by := form.get(sym.time)) is not None:
+            size = choose(compare("equal", by, constant(0.0)), constant(0.0), divide(size, ex.abs(by)))
+        return 16.0 * _unit_roundoff() * (ex.abs(sym.time) + size) + 1e-30
 
     def _rest(self, form: Form) -> Any:
         """A sum without its multiple of the time."""
@@ -205,14 +241,17 @@ class TimeSwitches:
             return product
         return choose(compare("equal", factor, constant(0.0)), constant(0.0), product)
 
-    def _roots(self, form: Form, values: list[Any]) -> list[Any]:
+    def _roots(self, form: Form, values: list[Any]) -> list[Time]:
         """The times at which a sum has some values."""
         if sym.time not in form:
             return []
         less = _negative(self._rest(form))
-        return [divide(add(value, less), form[sym.time]) for value in values]
+        times = [divide(add(value, less), form[sym.time]) for value in values]
+        # what does not follow from the time has the same bits whenever it is computed
+        ahead = self._ahead(form) if any(self._has_time(one) for one in times) else constant(0.0)
+        return [(time, ahead) for time in times]
 
-    def _angles(self, wave: Any, height: Any) -> list[Any]:
+    def _angles(self, wave: Any, height: Any) -> list[Time]:
         """The times at which a sine or cosine of time has a value."""
         angle, = wave.args
         form = self._form(angle)
@@ -220,7 +259,7 @@ class TimeSwitches:
         half_turn, inverse = _waves[wave.op]
         principal = multiply(constant(half_turn / math.pi), apply(inverse, height))
         other = subtract(constant(half_turn if wave.op in ("sin", "sinpi") else 0.0), principal)
-        turns = apply(ex.floor, divide(self._now_of(angle), constant(2 * half_turn)))
+        turns = apply(ex.floor, divide(self._now_of(angle, form), constant(2 * half_turn)))
         return self._roots(form, [add(one, multiply(add(turns, constant(k)), constant(2 * half_turn)))
                                   for one in (principal, other) for k in (-1.0, 0.0, 1.0)])
 

@@ -46,6 +46,58 @@ def test_a_wave_is_right_however_it_is_written(wave):
     np.testing.assert_allclose(run["x"], after(24 * np.arange(5), 120, 12.0), rtol=1e-9)
 
 
+@pytest.mark.parametrize("condition, span, on", [
+    (t % 24 < 12, (0, -48), -24), (abs(t) < 1, (0, -20), -1), ((-t) % 24 < 12, (0, 48), 24),
+    (my.maximum(-t, t) < 1, (0, 20), 1), (my.minimum(-t, t) > -1, (0, 20), 1)])
+def test_a_jump_at_time_zero_is_seen_from_either_side(condition, span, on):
+    run = my.solve(my.model({x: where(condition, 1.0, 0.0)}), start={x: [0]}, time=span, rtol=1e-9, interpreted=True)
+    np.testing.assert_allclose(run["x"], on, rtol=1e-9)
+
+
+@pytest.mark.parametrize("phase", [1e5 + 0.1, 1e7 + 0.1, 1e9 + 0.1])
+def test_periods_are_not_lost_far_from_their_origin(phase):
+    steps = np.floor((phase + np.linspace(0, 10, 1_000_001)) / 0.7)
+    edges = np.concatenate([[0], np.unique(steps)[1:] * 0.7 - phase, [10]])
+    on = np.minimum(edges[1:], edges[:-1] + 0.3) - edges[:-1]
+    on[0] = max(0.0, 0.3 - phase % 0.7)
+    for condition, given, starts in (((t + T) % 0.7 < 0.3, {T: phase}, {}), (clock % 0.7 < 0.3, {}, {clock: phase})):
+        model = my.model({x: where(condition, 1.0, 0.0), **({clock: 1.0} if starts else {})})
+        run = my.solve(model, given, start={x: [0], **starts}, time=(0, 10), rtol=1e-9, interpreted=True)
+        np.testing.assert_allclose(run["x"], on.sum(), rtol=1e-6)
+
+
+def test_pulses_as_short_as_a_time_stamp_resolves_are_not_lost():
+    stamp = 1.7e9 + 1
+    for on, start, end, height in ((stamp, 1.7e9, 1.7e9 + 10, 1 / 0.15), (30.0, 0, 100, 1e9)):
+        model = my.model({x: where((t > T) & (t < T + 1 / height), height, 0.0)})
+        run = my.solve(model, {T: on}, start={x: [0]}, time=(start, end), rtol=1e-3, atol=1e-3, interpreted=True)
+        np.testing.assert_allclose(run["x"], 1, rtol=1e-5)
+
+
+def test_periods_in_single_precision_are_not_lost():
+    periods = np.array([0.1, 0.3, 0.7, 1.1, 2.3])
+    run = my.solve(my.model({x: where(t % T < T / 2, 1.0, 0.0)}), {T: periods}, start={x: 0}, time=(0, 11),
+                   precision="float", rtol=1e-5, device="cpu")
+    whole = np.floor(11 / periods)
+    np.testing.assert_allclose(run["x"], whole * periods / 2 + np.minimum(11 - whole * periods, periods / 2), rtol=1e-4)
+
+
+def test_summaries_of_what_jumps_are_exact():
+    largest, when, area = (my.accessory(name) for name in ("largest", "when", "area"))
+    gone = x * where(t < T, 1.0, 0.0)
+    for rate in (where(t < T, 1.0, 0.0), 1.0):  # also where no equation jumps
+        model = my.model({x: rate}, accessories={
+            largest: my.phase_maximum(gone), when: my.time_of_maximum(gone), area: my.integral(gone)})
+        run = my.solve(model, {T: [7.3]}, start={x: 0}, time=(0, 10), rtol=1e-9)
+        np.testing.assert_allclose([run["largest"], run["when"], run["area"]], [[7.3], [7.3], [7.3**2 / 2]], rtol=1e-9)
+
+
+def test_a_phase_that_initialise_begins_elsewhere_has_its_own_first_jump():
+    model = my.model({x: where((t > T) & (t < T + 2), 1.0, 0.0)}, initialise={my.t_begin: T + 1})
+    run = my.solve(model, {T: [-3.0, 4.0]}, start={x: 0}, time=(0, 10), rtol=1e-9)
+    np.testing.assert_allclose(run["x"], 1, rtol=1e-9)
+
+
 @pytest.mark.parametrize("options, rtol", [
     ({"method": "rodas_5p", **tight}, 1e-9), ({"interpreted": True, **tight}, 1e-9),
     ({"method": "verner_7", **tight}, 1e-9), ({"method": "runge_kutta_4", "step": 0.7}, 1e-4),
