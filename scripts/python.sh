@@ -23,9 +23,9 @@ installed.
 Options:
   --required  exit status 1 instead of 77
   --others    also tests of work with other packages (JAX, Dask, SALib and more), whose download takes minutes
-  --full      an argument of pytest: also tests that are marked as long; the wheel is as users get it, else with less
-              optimisation
-  --all       an argument of pytest: all models for all GPUs by NVRTC, which takes minutes
+  --full      an argument of pytest: also tests that are marked as long, with NVRTC and a wheel as users get it;
+              without it the wheel is optimised less, and is for tests alone
+  --all       an argument of pytest: what --full does, and all models for all GPUs by NVRTC, which takes minutes
   --help      this text
 END
 }
@@ -33,15 +33,18 @@ END
 missing_status=77
 extras=(test)
 if has_command nvidia-smi; then extras+=(cuda); fi
+full=no
 while (($#)); do
     case $1 in
         --help | -h) usage; exit 0 ;;
         --required) missing_status=1 ;;
-        --others) extras+=(cuda test-others) ;;
+        --others) extras+=(test-others) ;;
         *) break ;;
     esac
     shift
 done
+
+if [[ " $* " == *" --full "* || " $* " == *" --all "* ]]; then full=yes extras+=(cuda); fi
 
 require_packages g++ cmake ninja-build python3 python3-dev python3-venv libxsimd-dev nlohmann-json3-dev
 rm -rf "$wheels" "$environment"
@@ -60,7 +63,7 @@ if ! { python3 -m venv "$environment" &&
 fi
 started=$SECONDS
 definitions=()
-if [[ " $* " != *" --full "* ]]; then
+if [[ $full == no ]]; then
     definitions=(-Ccmake.define.CMAKE_CXX_FLAGS_RELEASE="-O1 -DNDEBUG -DMYRIAD_OUT_OF_LINE")
 fi
 quietly build/python-wheel.log "${pip[@]}" wheel "${definitions[@]}" --no-build-isolation --no-deps --wheel-dir "$wheels/linux" .

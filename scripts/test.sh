@@ -18,14 +18,14 @@ Installs the packages that are missing (as root or with sudo), builds and runs t
 Its last line is "N passed, N failed"; the exit status is 0 if none failed.
 
 Steps that run without options: what shows that a build is right.
-  ci        g++, release, warnings are errors: all tests of the library
+  ci        g++, release, warnings are errors: the tests of the library, but for those of programs
   python    the Python package: its wheel is built, installed in a fresh virtual environment, and tested (skipped where
             the packages of PyPI that it is built with cannot be installed)
 
 With --full, python runs all its tests, also those that take long and those with other packages, JAX and Dask among
 them, and there are these steps. All run in the order ci, programs, python, and then as they stand here.
   programs  in the build of ci: examples, benchmarks, validation, projects outside that use the library, every public
-            header by itself, what must not compile, compile times, the documents
+            header by itself, what must not compile, compile times, derivatives of every model, the texts of docs
   docs      the documentation as a site: warnings are errors, links within it lead somewhere (skipped where Sphinx
             cannot be installed)
   cuda      the tests' kernels compile for one GPU and as PTX, some within limits of registers and stack; a program with

@@ -259,6 +259,7 @@ def _checked(model: AnyModel, by: Sequence[str]) -> Model:
     components = Components(model)
     if any(s.value[1] in by or components.follows(s.value[1], by, by) for s in switches.needed):
         raise _refuse("the equations jump at times that depend on components that derivatives are by")
+    acting = _actions(model)
     for one in (*model.events, *model.stops):
         is_event = isinstance(one, Event)
         what = f"the {'event' if is_event else 'stop'} '{one.name}'"
@@ -274,10 +275,10 @@ def _checked(model: AnyModel, by: Sequence[str]) -> Model:
             for symbol in symbols_of([value]):
                 if symbol.value[0] not in ("state", "parameter", "shared", "shared_integer") and symbol is not sym.time:
                     raise _refuse(f"the action of {what} reads {symbol.value[1]}")
-        if one in _actions(model) and isinstance(one, Stop) and any(s.value[1] in by for s in symbols_of(one.values)):
+        if one in acting and isinstance(one, Stop) and any(s.value[1] in by for s in symbols_of(one.values)):
             raise _refuse(f"the time of {what} depends on components that derivatives are by")
         # where the slope jumps, that before an event is not known from its state
-        if one.do and is_event and (jump := next(filter(_may_jump, walk(model.rhs)), None)) is not None:
+        if one in acting and is_event and (jump := next(filter(_may_jump, walk(model.rhs)), None)) is not None:
             raise _refuse(f"{what} acts, and the equations have `{text(jump)}`, which may jump there")
     return model
 
@@ -291,7 +292,8 @@ def _actions(model: Model) -> list[Any]:
 def _may_jump(node: Node) -> bool:
     """Whether an operation may jump along the solution."""
     jumping = ("select", "copysign", "floor", "rint", "fmod", "floor_mod", "floor_divide", "find_interval")
-    return node.op in jumping and any(s.value[0] == "state" or s is sym.time for s in symbols_of([node]))
+    decisive = node.args[:1] if node.op == "select" else node.args[1:] if node.op == "copysign" else [node]
+    return node.op in jumping and any(s.value[0] == "state" or s is sym.time for s in symbols_of(decisive))
 
 
 def _counting(model: Model, actions: Sequence[Event | Stop]) -> tuple[Model, list[str]]:

@@ -540,10 +540,10 @@ class Model(kinds.ComponentNames):
             return
         if "stop_time" in self.component_names:  # which a model with stops cannot have
             self.jumps_to_miss = switches.jumps
-            self.switches = TimeSwitches({}, [], [], [], free)
+            self.switches = TimeSwitches({}, [], [], [], free)  # none
             return
         self.rhs = list(switches.equations.values())
-        self.observed = [(name, quantity) for (name, _), quantity in zip(self.observed, switches.quantities)]
+        self.observed = [(short, quantity) for (short, _), quantity in zip(self.observed, switches.quantities)]
         made = stop(switches.following, every=0, name=free("jump"), do=switches.at_jump)
         self.stops += self._stops([made])
         self.initialise = switches.continued(self.initialise, begins=True)
@@ -655,7 +655,7 @@ class Model(kinds.ComponentNames):
                         raise Error(f"event_count('{name}') in {what}{at(self.line)} names no event: there are "
                                     f"{', '.join(e.name for e in self.events) or 'none'}")
         for what, members, present in (
-                ("stops", "stop stop_time", len(self.stop_names) > bool(self.switches.at_jump)),
+                ("stops", "stop stop_time", len(self.stop_names) - (1 if self.switches.at_jump else 0)),
                 ("triggers", "trigger condition after_trigger initial_value persistent queue", self.triggers)):
             taken = next((n for n in members.split() if n in kind_of), None)
             if taken is not None and present:

@@ -19,7 +19,6 @@ from .sbml_conditions import all_of, any_of, comparisons_of, false, function_of,
 if TYPE_CHECKING:
     from .sbml_events import Events
 from .sbml_math import Refused
-from .time_switches import margin
 
 _together = 16, 64  #: whose order matters: where it is not known beforehand, and in any case
 _consequences = 4  #: of them, at the same instant, likewise
@@ -70,6 +69,12 @@ class Pending:
         mine, others = self.values, other.values
         return mine is others or mine is not None and others is not None and all(
             value is others[name] for name, value in mine.items())
+
+
+def margin() -> Any:
+    """The difference of times that count as one instant: rounding errors of the time and of where it began, whatever
+    the model's unit of time is."""
+    return 1e-10 * ex.abs(sym.time) + 1e-13 * ex.abs(sym.t_begin)
 
 
 def at_once(earlier: Any) -> Any:

@@ -37,34 +37,30 @@ Form = dict[Any, Any]  #: a sum: coefficients by what they multiply, which is 1,
 Time = tuple[Any, Any]  #: a time, and how far it has to be ahead to be still to come
 
 
-def margin() -> Any:
-    """The difference of times that count as one instant: rounding errors of the time and of where it began, whatever
-    the model's unit of time is."""
-    return 1e-10 * ex.abs(sym.time) + 1e-13 * ex.abs(sym.t_begin)
-
-
 def note(model: Any, options: Options) -> str | None:
     """What to know of a model that jumps at times where no step ends."""
     jumps = getattr(model, "jumps_to_miss", ())
     if not jumps or options.maximum_step is not None or options.step is not None:
         return None
     rename = ("" if "stop_time" not in model.component_names else
-              ", or call 'stop_time', which has a meaning of its own where steps end at jumps, by another name")
+              ", or rename 'stop_time': a model whose steps end at jumps cannot have a component of that name")
     return (f"the model jumps where {' and '.join(f'`{jump}`' for jump in jumps)} changes, at times where no step "
             f"ends: it may pass over what is between two of them; give a maximum_step= shorter than that{rename}")
 
 
 def _unit_roundoff() -> Any:
-    """The largest relative error of rounding in the precision of a run."""
+    """The largest relative error of rounding in the precision of a run. One text is compiled for both: 1 + 1e-10 is 1
+    in single precision alone."""
     one = 1.0 + ex.abs(sym.t_begin)
     return choose(compare("equal", one * (1.0 + 1e-10), one), constant(2.0**-24), constant(2.0**-53))
 
 
 class TimeSwitches:
-    """What makes jumps of `equations`, by state, and of the `quantities` of summaries exact. They then are as they are
-    between jumps, and read the accessory `between`. Steps have to end at the times of the accessory `following`, where
-    assignments `at_jump` are made, as `at_start` at the start of a phase; both are empty if nothing jumps. Jumps whose
-    times have no formula are `unknown`, and stay as they are.
+    """Makes the jumps in time of `equations`, by state, and of the `quantities` of summaries exact. If there are any,
+    both are rewritten: what jumps is computed for the time `between`, an accessory that is between the last jump and the
+    next. A step has to end at the time of the accessory `following`, where assignments `at_jump` are made; those of
+    `at_start` are made at the start of a phase. If nothing jumps, there are none. Jumps whose times have no formula are
+    `unknown`, and stay as they are.
 
     Jumps may also depend on what changes at actions alone, which then find the next jump anew: `continued`; not on
     what is `changing`. If `functions` of events jump or come back, steps also end halfway between jumps, where the
@@ -73,6 +69,8 @@ class TimeSwitches:
     def __init__(self, equations: Mapping[Any, Any], quantities: Sequence[Any], functions: Sequence[Any],
                  changing: Collection[Any], free_name: Callable[[str], str]) -> None:
         self.equations, self.quantities = dict(equations), list(quantities)
+        self.following: Any = None
+        self.between: Any = None
         self.at_start: dict[Any, Any] = {}
         self.at_jump: dict[Any, Any] = {}
         self.needed: set[Any] = set()  #: what the times of jumps follow from
@@ -121,7 +119,7 @@ class TimeSwitches:
         self.at_start = self.at_jump = {following: to_middle if in_events else first, middle: to_middle}
         if in_events:
             # functions of events are seen in the middle, and once more shortly before the jump, as they are until then
-            ahead = 4.0 * (1e-10 * ex.abs(first) + 1e-13 * ex.abs(sym.t_begin))
+            ahead = 64.0 * _unit_roundoff() * (ex.abs(first) + ex.abs(sym.t_begin))
             is_near = both(is_finite, compare("less_equal", self._direction * (first - sym.time), 2.0 * ahead))
             before = choose(is_finite, first - self._direction * ahead, first)
             is_middle = compare("equal", following, middle)
@@ -166,7 +164,8 @@ class TimeSwitches:
         return rebuilt([node], lambda one: one, {sym.time: time, **clocks})[0]
 
     def _first(self, times: list[Time]) -> Any:
-        """The first of some times that is still to come, infinite if there is none."""
+        """The first of some times that is still to come, infinite if there is none. Multiplied by the direction, so
+        that it is the smallest backwards, too."""
         to_come = [choose(compare("greater", self._direction * (t - sym.time), ahead), self._direction * t,
                           constant(math.inf)) for t, ahead in times]
         return self._direction * functools.reduce(lambda a, b: ex.make("min", (a, b)), to_come)
@@ -189,7 +188,7 @@ class TimeSwitches:
 
     def _found_times_of(self, node: Any) -> list[Time] | None:
         if node.op in _comparisons:
-            form = self._form(ex.make("subtract", node.args))
+            form = self._form(_decisive(node))
             waves = _waves_of(form)
             if form is None or len(waves) > 1 or waves and sym.time in form:
                 return None
@@ -197,7 +196,7 @@ class TimeSwitches:
                 rest = self._rest({key: factor for key, factor in form.items() if key is not waves[0]})
                 return self._angles(waves[0], divide(_negative(rest), form[waves[0]]))
             return self._roots(form, [constant(0.0)])
-        inside = node.args[0] if len(node.args) == 1 else ex.make("divide", node.args)
+        inside = _decisive(node)
         form = self._form(inside)
         if form is None or _waves_of(form):
             return None
@@ -206,20 +205,14 @@ class TimeSwitches:
         return self._roots(form, [add(below, constant(shift + k)) for k in (-1, 0, 1)])
 
     def _now_of(self, node: Any, own: Form | None = None) -> Any:
-        """What an expression is right after now, as far as rounding lets tell. `own`: itself as a sum, if its size
-        decides what jumps."""
-        forms = [form for form in (own, *map(self._compared, walk([node]))) if form is not None]
+        """The value of an expression a little later than now, so that rounding cannot put it before a jump that is at
+        this time. `own`: the expression as a sum, where its own size decides, as of whole parts and angles."""
+        inside = [self._form(_decisive(one)) for one in walk([node]) if self._may_jump(one)]
+        forms = [form for form in (own, *inside) if form is not None]
         if not forms:
             return node
         ahead = functools.reduce(lambda a, b: ex.make("max", (a, b)), [self._ahead(form) for form in forms])
         return self._at(node, sym.time + self._direction * ahead)
-
-    def _compared(self, node: Any) -> Form | None:
-        """The sum whose size decides what something that jumps is."""
-        if not self._may_jump(node):
-            return None
-        return self._form(ex.make("subtract", node.args) if node.op in _comparisons else node.args[0]
-                          if len(node.args) == 1 else ex.make("divide", node.args))
 
     def _ahead(self, form: Form) -> Any:
         """The error of the time at which a sum has some value, by rounding; more than zero, so that one is ahead of a
@@ -321,6 +314,13 @@ class TimeSwitches:
         if node.op == "abs":
             return choose(is_less, ex.make("negate", (a,)), a)
         return choose(is_less, *((a, b) if node.op == "min" else (b, a)))
+
+
+def _decisive(node: Any) -> Any:
+    """What decides when an operation jumps: at zero if it is a comparison, else at whole numbers."""
+    if node.op in _comparisons:
+        return ex.make("subtract", node.args)
+    return node.args[0] if len(node.args) == 1 else ex.make("divide", node.args)
 
 
 def _sum(a: Form, b: Form) -> Form:

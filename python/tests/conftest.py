@@ -25,8 +25,8 @@ _compiler = my.compiler.find_compiler()
 
 @pytest.fixture(autouse=True)
 def calls_instead_of_inlining(request, monkeypatch):
-    """Kernels are compiled in about half of the time, with the same results, unless a module is about how users get
-    them: `pytestmark = pytest.mark.as_users_compile`."""
+    """Kernels are compiled in about half of the time, with the same results, unless a test is about how users get
+    them: `@pytest.mark.as_users_compile`."""
     if _compiler is not None and request.node.get_closest_marker("as_users_compile") is None:
         monkeypatch.setenv("MYRIAD_CXX", shlex.join((*_compiler.command, "-DMYRIAD_OUT_OF_LINE")))
 

@@ -98,7 +98,7 @@ def test_every_operation_compiles_for_all_kinds_of_numbers_and_has_the_value_of_
             const std::int32_t n = 1;
             myriad::inputs<sink, double> p;
             p.shared = shared, p.shared_integer = &n, p.integer_accessory[sink::mode] = 1;
-                p.accessory[sink::between_jumps] = 0.25;
+            p.accessory[sink::between_jumps] = 0.25;
             const double points[][3] = {""", ",".join(f"{{{x}, {v}, {k}}}" for x, v, k in points), """};
             for (const auto& [x, v, k] : points) {
                 p.parameter[sink::k] = k;
