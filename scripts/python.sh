@@ -66,7 +66,8 @@ definitions=()
 if [[ $full == no ]]; then
     definitions=(-Ccmake.define.CMAKE_CXX_FLAGS_RELEASE="-O1 -DNDEBUG -DMYRIAD_OUT_OF_LINE")
 fi
-quietly build/python-wheel.log "${pip[@]}" wheel "${definitions[@]}" --no-build-isolation --no-deps --wheel-dir "$wheels/linux" .
+quietly build/python-wheel.log "${pip[@]}" wheel "${definitions[@]}" --no-build-isolation --no-deps \
+    --wheel-dir "$wheels/linux" .
 PATH=$PWD/$environment/bin:$PATH quietly build/python-auditwheel.log \
     "$environment/bin/python" -m auditwheel repair --wheel-dir "$wheels" "$wheels"/linux/*.whl
 "${pip[@]}" install --no-compile --no-deps "$wheels"/*.whl

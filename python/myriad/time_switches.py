@@ -57,8 +57,8 @@ def _unit_roundoff() -> Any:
 
 class TimeSwitches:
     """Makes the jumps in time of `equations`, by state, and of the `quantities` of summaries exact. If there are any,
-    both are rewritten: what jumps is computed for the time `between`, an accessory that is between the last jump and the
-    next. A step has to end at the time of the accessory `following`, where assignments `at_jump` are made; those of
+    both are rewritten: what jumps is computed for the time `between`, an accessory that is between the last jump and
+    the next. A step has to end at the time of the accessory `following`, where assignments `at_jump` are made; those of
     `at_start` are made at the start of a phase. If nothing jumps, there are none. Jumps whose times have no formula are
     `unknown`, and stay as they are.
 
