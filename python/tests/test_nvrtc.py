@@ -16,6 +16,7 @@ import example_models
 import myriad as my
 import test_cpp
 from myriad import _core, cache, nvrtc
+from myriad.adjoint import Adjoint
 from myriad.methods import method_type, methods
 from myriad.sensitivities import with_sensitivities
 
@@ -69,6 +70,13 @@ def dosed():
     return with_sensitivities(my.model({x: -x}, stops=stops), [at])
 
 
+def pulsed():
+    """Pulses whose times are computed for each instance, and an integral of them."""
+    x, area, width, on = my.state("x"), my.accessory("area"), my.parameter("width"), my.time % my.parameter("T")
+    return my.model({x: my.where(on < width, 1.0, 0.0) - x}, events=my.event(x - 0.5, do={width: 0.5 * width}),
+                    accessories={area: my.integral(my.where(on < width, x, 0.0))})
+
+
 # What is compiled for each method: models with every kind of hook and event, outputs along the solution, tables.
 cases = [
     (example_models.duffing, "cash_karp", (), False, "double"),
@@ -84,6 +92,7 @@ cases = [
     (ring, "tsitouras_5", ("rms_norm",), True, "double"),
     (bells, "cash_karp", (), False, "double"),
     (dosed, "tsitouras_5", (), False, "double"),
+    (pulsed, "tsitouras_5", (), False, "float"),
     (example_models.continuation, "rodas_5p", ("pid_control", "mixed_scale"), True, "double"),
 ]
 models = (*example_models.headers, test_cpp.every_operation, epidemic)
@@ -280,3 +289,13 @@ def test_a_kernel_that_generates_is_not_taken_for_one_that_does_not(monkeypatch)
     for generates in (False, True, False, True):
         assert ("GENERATE" in nvrtc.kernel(*asked, generates).library) == generates
     assert len(compiled) == 2
+
+
+@pytest.mark.parametrize("method", ["tsitouras_5", "rodas_5p"])
+def test_an_adjoint_through_jumps_and_actions_compiles(method):
+    x, height = my.state("x"), my.parameter("height")
+    model = my.model({x: my.where(my.time % 10 < 1, height - x * x, -x)}, events=my.event(x - 0.9, do={x: 0.5 * x}))
+    made = Adjoint(model, ["height"], ["x"], {}, {"x": 0.0}, {"time": (0, 24), "method": method, "device": "cpu"}, 3)
+    made._gpu = 0
+    image, _ = nvrtc.library().compile(made.source(), 90)
+    assert b"myriad_adjoint" in image
