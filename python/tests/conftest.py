@@ -20,15 +20,19 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 
 import myriad as my  # noqa: E402
 
+# Kernels of tests are compiled in about half of the time, with the same results, in the whole session.
+_quick = "-DMYRIAD_OUT_OF_LINE"
 _compiler = my.compiler.find_compiler()
+_command = () if _compiler is None else tuple(word for word in _compiler.command if word != _quick)
+if _command:
+    os.environ["MYRIAD_CXX"] = shlex.join((*_command, _quick))
 
 
 @pytest.fixture(autouse=True)
-def calls_instead_of_inlining(request, monkeypatch):
-    """Kernels are compiled in about half of the time, with the same results, unless a test is about how users get
-    them: `@pytest.mark.as_users_compile`."""
-    if _compiler is not None and request.node.get_closest_marker("as_users_compile") is None:
-        monkeypatch.setenv("MYRIAD_CXX", shlex.join((*_compiler.command, "-DMYRIAD_OUT_OF_LINE")))
+def flags_of_users(request, monkeypatch):
+    """Tests of how users get kernels are marked: `@pytest.mark.as_users_compile`."""
+    if _command and request.node.get_closest_marker("as_users_compile") is not None:
+        monkeypatch.setenv("MYRIAD_CXX", shlex.join(_command))
 
 
 OSCILLATOR = """

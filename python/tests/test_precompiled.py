@@ -10,7 +10,7 @@ import pytest
 import myriad as my
 from myriad import cache, compiler
 
-pytestmark = [pytest.mark.long, pytest.mark.as_users_compile]
+pytestmark = pytest.mark.long
 
 MODEL = """
 import sys
