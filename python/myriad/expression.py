@@ -517,7 +517,7 @@ def _function(name: str, description: str) -> Callable[[Operand], Expression]:
 sqrt = _function("sqrt", "Square root; NaN of negative numbers.")
 cbrt = _function("cbrt", "Cube root.")
 _floor, _rint = _function("floor", ""), _function("rint", "")
-continuous = "continuous"  #: the value of a node of whole numbers within an expression that does not jump with it
+continuous = "continuous"  #: the `value` of a floor that jumps while the expression around it does not
 
 
 def _of_real(x: Operand, function: Callable[[Expression], Expression]) -> Expression:

@@ -179,7 +179,7 @@ class Model(kinds.ComponentNames):
     tables behind the other shared values; `shared_values` has what they are. `cpp()` is its header, `hash` identifies
     it."""
 
-    _reserved: Collection[str] = ()  # names that components must not get by themselves
+    _reserved: Collection[str] = ()  # names for no component that the package adds
 
     def __init__(self, equations: ByComponent | Callable[..., Any] | str, events: Event | Sequence[Event],
                  accessories: ByComponent | None, initialise: ByComponent | None, after_step: ByComponent | None,

@@ -5,8 +5,8 @@ parts and remainders of time.
 Steps end at each of these times, so that no step passes over what happens between two of them. Between two of them
 everything that jumps keeps the value that it has halfway.
 
-At a jump, what is computed of the time may round to either side of it. So what comes next is asked a little ahead of
-the time: by the rounding errors of what is compared, which depend on its summands, and on the precision of the run.
+At the time of a jump, rounding may put what is compared on either side of it. So the next jump is sought a little later
+than now: by the rounding errors of what is compared, which depend on its summands and on the precision of the run.
 """
 
 from __future__ import annotations

@@ -37,9 +37,9 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 /// Instances of an adjoint call that lanes go through together. Computes the values of quantities or the gradient.
 /// Besides what transposed_step.hpp asks for, `Adjoint` has n_quantity `quantities` of time, state and parameters, and
 /// `transposed_quantities`; and n_action actions of events and stops: `act` gives the state after one, `transposed_act`
-/// and `slope_of_event` have derivatives by time behind the others. `between_jumps` is the accessory that tells its
-/// equations the time of the middle between two jumps, negative if they have none. A record at the time of an action
-/// has the state before it.
+/// and `slope_of_event` have derivatives by time behind the others. `between_jumps` is the number of the
+/// accessory that tells the equations a time between the last jump and the next, negative if they do not jump. A record
+/// at the time of an action has the state before it.
 template <class Adjoint, class Method, class S, bool wants_values>
 class adjoint_pack {
     using R = real_of<S>;
@@ -92,7 +92,7 @@ private:
     transposed_step<Adjoint, Method, S> step_;
     bool interpolates_ = false;
 
-    /// Lets the equations be those between the jumps that are before and after the step.
+    /// Lets the equations take the branches that hold between the jumps before and after the step.
     void choose_branches() {
         if constexpr (Adjoint::between_jumps >= 0) p_.accessory[Adjoint::between_jumps] = fma(S(R(0.5)), h_, t_);
     }
