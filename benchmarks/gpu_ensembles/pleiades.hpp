@@ -16,12 +16,14 @@ struct star {
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_unit_state> rhs(int unit, auto, const auto& s, const auto& p) {
         R ax = R(0), ay = R(0);
+        // No branches, so that the stars' terms overlap: a star adds nothing to itself, as dx and dy are zero.
+        MYRIAD_UNROLL
         for (int other = 0; other < s.units; ++other) {
-            if (other == unit) continue;
             const auto from = s.of(other);
-            const R mass = other == 0 ? R(p[m1]) : R(other + 1);
-            const R dx = from[x] - s[x], dy = from[y] - s[y], square = dx * dx + dy * dy;
-            const R strength = mass / (square * myriad::sqrt(square));
+            const R mass = other == 0 ? R(p[m1]) : R(other + 1), itself = R(other == unit ? 1 : 0);
+            const R dx = from[x] - s[x], dy = from[y] - s[y];
+            const R inverse = myriad::rsqrt(dx * dx + dy * dy + itself);
+            const R strength = mass * inverse * inverse * inverse;
             ax = myriad::fma(strength, dx, ax);
             ay = myriad::fma(strength, dy, ay);
         }
@@ -52,7 +54,7 @@ struct pleiades {
             MYRIAD_UNROLL
             for (int j = i + 1; j < stars; ++j) {
                 const R dx = s[j * size + x] - s[i * size + x], dy = s[j * size + y] - s[i * size + y];
-                const R square = dx * dx + dy * dy, strength = R(1) / (square * myriad::sqrt(square));
+                const R inverse = myriad::rsqrt(dx * dx + dy * dy), strength = inverse * inverse * inverse;
                 const R ax = strength * dx, ay = strength * dy;
                 slopes[i * size + u] = myriad::fma(mass(j), ax, slopes[i * size + u]);
                 slopes[i * size + v] = myriad::fma(mass(j), ay, slopes[i * size + v]);

@@ -43,7 +43,7 @@ _headers = {"time": "t", "step": "h", "next_step": "h_next", "phase": "phase", "
 _temporaries = {"add": "sum", "subtract": "difference", "multiply": "product", "divide": "quotient", "sqrt": "root",
                 "sin": "sine", "cos": "cosine", "exp": "exponential", "pow": "power", "powr": "power",
                 "log": "logarithm", "select": "chosen", "abs": "size", "min": "least", "max": "largest",
-                "reciprocal": "inverse", "hypot": "length", "negate": "opposite"}
+                "reciprocal": "inverse", "rsqrt": "inverse_root", "hypot": "length", "negate": "opposite"}
 
 
 _instructions = {"pow": 40, "powr": 40, "find_interval": 20, "atan2": 25, "tan": 25, "fmod": 10, "floor_mod": 15,

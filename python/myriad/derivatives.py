@@ -26,6 +26,7 @@ _partials: dict[str, Callable[..., Sequence[Any]]] = {
     "negate": lambda f, a: (-1,),
     "fma": lambda f, a, b, c: (b, a, 1),
     "reciprocal": lambda f, a: (-f * f,),
+    "rsqrt": lambda f, a: (-0.5 * (f * f * f),),
     "sqrt": lambda f, a: (0.5 / f,),
     "cbrt": lambda f, a: (1 / (3 * f * f),),
     "abs": lambda f, a: (ex.copysign(1.0, a),),

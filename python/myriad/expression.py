@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 
 __all__ = ["sqrt", "cbrt", "abs", "floor", "ceil", "trunc", "round", "sin", "cos", "tan", "asin", "acos", "atan",
            "atan2", "sinpi", "cospi", "sinh", "cosh", "tanh", "exp", "exp2", "expm1", "log", "log2", "log10", "log1p",
-           "pow", "powr", "reciprocal", "hypot", "copysign", "fmod", "fma", "sincos", "sincospi", "minimum", "maximum",
-           "where", "is_finite", "uniform", "normal", "pi"]
+           "pow", "powr", "reciprocal", "rsqrt", "hypot", "copysign", "fmod", "fma", "sincos", "sincospi", "minimum",
+           "maximum", "where", "is_finite", "uniform", "normal", "pi"]
 
 pi = math.pi  #: the number
 
@@ -498,7 +498,7 @@ _unary: dict[str, Callable[..., Any]] = {  # for the values of constants and for
     "sqrt": np.sqrt, "cbrt": np.cbrt, "floor": np.floor, "sin": np.sin, "cos": np.cos, "tan": np.tan,
     "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan, "sinh": np.sinh, "cosh": np.cosh, "tanh": np.tanh,
     "exp": np.exp, "exp2": np.exp2, "log": np.log, "log2": np.log2, "log10": np.log10,
-    "reciprocal": lambda x: 1.0 / x,
+    "reciprocal": lambda x: 1.0 / x, "rsqrt": lambda x: 1.0 / np.sqrt(x),
     "rint": np.rint, "expm1": np.expm1, "log1p": np.log1p,
     "sinpi": lambda x: np.sin(np.pi * (x - 2.0 * np.rint(0.5 * x))),
     "cospi": lambda x: np.cos(np.pi * (x - 2.0 * np.rint(0.5 * x))),
@@ -565,6 +565,7 @@ log = _function("log", "Natural logarithm; NaN of negative numbers, minus infini
 log2 = _function("log2", "Logarithm to base 2.")
 log10 = _function("log10", "Logarithm to base 10.")
 reciprocal = _function("reciprocal", "1 / x without a division, for normal x with a normal result.")
+rsqrt = _function("rsqrt", "1 / sqrt(x) without a division, for normal x.")
 
 
 def _function_of_two(name: str, description: str) -> Callable[[Operand, Operand], Expression]:

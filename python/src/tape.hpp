@@ -18,7 +18,8 @@
     X(asin)                  \
     X(acos)                  \
     X(atan)                  \
-    X(sinh) X(cosh) X(tanh) X(exp) X(exp2) X(log) X(log2) X(log10) X(expm1) X(log1p) X(reciprocal) X(sinpi) X(cospi)
+    X(sinh)                  \
+    X(cosh) X(tanh) X(exp) X(exp2) X(log) X(log2) X(log10) X(expm1) X(log1p) X(reciprocal) X(rsqrt) X(sinpi) X(cospi)
 #define MYRIAD_TAPE_BINARY(X) X(min) X(max) X(pow) X(atan2) X(hypot) X(copysign) X(fmod) X(floor_mod) X(floor_divide)
 // Of whole numbers, which go round at the ends of their 32 bits, or 64 where `c` is not zero.
 #define MYRIAD_TAPE_WHOLE(X) X(wrapping_add) X(wrapping_subtract) X(wrapping_multiply) X(quotient) X(remainder)

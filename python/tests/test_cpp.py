@@ -60,7 +60,7 @@ def every_operation():
     peak, at_peak = my.accessory("peak"), my.accessory("at_peak")
     unary = (my.sqrt, my.cbrt, my.abs, my.floor, my.round, my.sin, my.cos, my.tan, my.asin, my.acos, my.atan, my.sinpi,
              my.cospi, my.sinh, my.cosh, my.tanh, my.exp, my.exp2, my.expm1, my.log, my.log1p, my.log2, my.log10,
-             my.reciprocal, my.ceil, my.trunc)
+             my.reciprocal, my.rsqrt, my.ceil, my.trunc)
     total = sum(function(0.1 + 0.05 * my.abs(v)) for function in unary)
     total += my.pow(my.abs(x) + 1, 1.7) + my.powr(my.abs(x) + 1, k) + my.hypot(x, v) + my.copysign(2, x)
     total += my.fma(x, v, 1) + my.atan2(v, x) + my.minimum(x, v, 0) + my.maximum(1.5, B) + my.pow(2, B)

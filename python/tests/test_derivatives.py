@@ -17,7 +17,8 @@ at = {x: 0.6, y: -0.35, z: 1.7, k: 1.3}
 
 smooth = {
     "sum": x + y - z, "product": x * y * k, "quotient": x / (z * y), "fma": my.fma(x, y, z), "negative": -(x * y),
-    "reciprocal": my.reciprocal(x * z), "sqrt": my.sqrt(x * z), "cbrt": my.cbrt(z * x), "abs": abs(x * y),
+    "reciprocal": my.reciprocal(x * z), "sqrt": my.sqrt(x * z), "rsqrt": my.rsqrt(x * z),
+    "cbrt": my.cbrt(z * x), "abs": abs(x * y),
     "sin": my.sin(x * y), "cos": my.cos(x * y), "tan": my.tan(x * y), "asin": my.asin(x * y), "acos": my.acos(x * y),
     "atan": my.atan(x * y), "sinpi": my.sinpi(x * y), "cospi": my.cospi(x * y), "sinh": my.sinh(x * y),
     "cosh": my.cosh(x * y), "tanh": my.tanh(x * y), "exp": my.exp(x * y), "exp2": my.exp2(x * y),

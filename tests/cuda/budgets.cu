@@ -4,10 +4,10 @@
 //
 //
 // limit: integrate_ensemble<lorenz_with<eight_thirds>, runge_kutta_4> registers 56 stack 0 spill 0
-// limit: integrate_ensemble<lorenz_with<eight_thirds>, tsitouras_5> registers 64 stack 0 spill 0
-// limit: integrate_ensemble<keller_miksis, cash_karp> registers 136 stack 0 spill 0
-// limit: integrate_ensemble<keller_miksis, verner_7> registers 168 stack 0 spill 0
-// limit: integrate_ensemble<keller_miksis, dormand_prince_8> registers 168 stack 0 spill 0
+// limit: integrate_ensemble<lorenz_with<eight_thirds>, tsitouras_5> registers 80 stack 0 spill 0
+// limit: integrate_ensemble<keller_miksis, cash_karp> registers 144 stack 0 spill 0
+// limit: integrate_ensemble<keller_miksis, verner_7> registers 255 stack 0 spill 0
+// limit: integrate_ensemble<keller_miksis, dormand_prince_8> registers 176 stack 0 spill 0
 // limit: integrate_ensemble<relief_valve_model, cash_karp> registers 96 stack 192 spill 28
 // limit: integrate_ensemble<relief_valve_model, verner_7> registers 120 stack 184 spill 0
 // limit: integrate_ensemble<relief_valve_model, dormand_prince_8> registers 120 stack 184 spill 0

@@ -4,7 +4,7 @@
 // single.
 //
 // limit: integrate_ensemble<chain<2>, rosenbrock_23> stack 0 spill 0 registers 72
-// limit: integrate_ensemble<chain<2>, rodas_5p> stack 0 spill 0 registers 80
+// limit: integrate_ensemble<chain<2>, rodas_5p> stack 0 spill 0 registers 88
 // limit: integrate_ensemble<chain<4>, rosenbrock_23> stack 16 spill 32 registers 136
 // limit: integrate_ensemble<chain<4>, rodas_5p> stack 0 spill 0 registers 168
 // limit: integrate_ensemble<chain<6>, rosenbrock_23> stack 0 spill 0

@@ -23,7 +23,7 @@
 // case: states_of_the_system
 // expect: the states of coupled units are those of the units
 // case: team_that_does_not_divide_a_warp
-// expect: threads_per_instance does not divide a warp: it is 1, 2, 4, 8, 16 or 32
+// expect: threads_per_instance is not a power of two from 1 to 256
 // SPDX-License-Identifier: MIT
 // Units that cannot be coupled.
 #include "myriad/coupled_units.hpp"

@@ -73,6 +73,7 @@ TEST_CASE("teams whose threads have one state each take the same steps as those 
     const auto by_32 = solved_on<method, teams::places<32>>(tests::test_device());
     check_same(by_1, by_8, 0);
     check_same(by_1, by_32, 0);
+    check_same(by_1, solved_on<method, teams::places<64>>(tests::test_device()), 0);
     check_same(by_8, solved_on<method, teams::places<8>>(myriad::device::cpu(1)), rounding);
 }
 
@@ -86,20 +87,22 @@ TEST_CASE("teams average errors as the CPU does") {
     check_same(here, solved_on<teams::averaged, teams::places<8>>(myriad::device::cpu(1)), rounding);
 }
 
-TEST_CASE("teams locate events, call hooks and sample as the CPU does") {
-    auto options = options_for<teams::hoppers<8>>();
-    for (int unit = 0; unit < teams::hoppers<8>::n_unit; ++unit) {
+TEMPLATE_TEST_CASE("teams locate events, call hooks and sample as the CPU does", "", teams::hoppers<8>,
+                   teams::hoppers<128>) {
+    using model = TestType;
+    auto options = options_for<model>();
+    for (int unit = 0; unit < model::n_unit; ++unit) {
         options.events.push_back({.direction = myriad::direction::falling, .tolerance = 1e-9});
         options.events.push_back({.tolerance = 1e-9});
     }
     options.samples = {.states = {0, 27}, .capacity = 20, .evenly = 11};
-    const auto here = solved_on<teams::sampled, teams::hoppers<8>>(tests::test_device(), options);
-    const auto there = solved_on<teams::sampled, teams::hoppers<8>>(myriad::device::cpu(1), options);
+    const auto here = solved_on<teams::sampled, model>(tests::test_device(), options);
+    const auto there = solved_on<teams::sampled, model>(myriad::device::cpu(1), options);
     constexpr double after_landings = 1e-5;  // at which differences grow
     check_same(here, there, after_landings);
     CHECK((here.integer_accessory(0) == there.integer_accessory(0)).all());
     CHECK(here.integer_accessory(0).minCoeff() > 0);
-    for (int c = 0; c < teams::hoppers<8>::n_accessory; ++c)
+    for (int c = 0; c < model::n_accessory; ++c)
         CHECK(((here.accessory(c) - there.accessory(c)).abs() <= after_landings).all());
     CHECK((here.samples().stored() == there.samples().stored()).all());
     for (const int c : {0, 27})

@@ -107,7 +107,7 @@ using teams::watched_ring;
 TEST_CASE("a team of threads integrates units that read each other's states as one thread does") {
     compare<teams::with_memory, places<1>, places<4>>(tolerances(30));
     compare<teams::with_memory, places<1>, places<16>>(tolerances(30));
-    compare<myriad::dormand_prince_8, places<1>, places<32>>(tolerances(30));
+    compare<myriad::dormand_prince_8, places<1>, places<64>>(tolerances(30));
 }
 
 TEST_CASE("a team of threads takes fixed steps as one thread does") {

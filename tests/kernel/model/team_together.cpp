@@ -14,7 +14,7 @@
 
 namespace {
 
-constexpr int most_threads = 32, most_numbers = 4096;
+constexpr int most_threads = 64, most_numbers = 4096;
 constexpr std::size_t bytes_of_stack = 512 << 10;
 
 struct simulation {
@@ -126,7 +126,7 @@ run_statistics run_in_teams(const any_arguments<double>& from, const run_options
     }
 INTEGRATE_IN_TEAMS(teams::places, teams::with_memory, 4)
 INTEGRATE_IN_TEAMS(teams::places, teams::with_memory, 16)
-INTEGRATE_IN_TEAMS(teams::places, myriad::dormand_prince_8, 32)
+INTEGRATE_IN_TEAMS(teams::places, myriad::dormand_prince_8, 64)
 INTEGRATE_IN_TEAMS(teams::places, myriad::runge_kutta_4, 8)
 INTEGRATE_IN_TEAMS(teams::phases, myriad::cash_karp, 2)
 INTEGRATE_IN_TEAMS(teams::phases, myriad::cash_karp, 16)

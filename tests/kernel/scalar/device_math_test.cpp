@@ -73,6 +73,18 @@ TEMPLATE_TEST_CASE("reciprocal errs by at most one ulp on the device", "", doubl
     CHECK(worst(all, values::inverse, [](W x) { return 1 / x; }) <= 1);
 }
 
+TEMPLATE_TEST_CASE("rsqrt errs by at most 1.5 ulps on the device, 2 in single precision", "", double, float) {
+    using R = TestType;
+    using W = tests::wider<R>;
+    for (const double decades : {0.6, sizeof(R) == 8 ? 307.0 : 37.0}) {
+        CAPTURE(decades);
+        std::vector<R> positive = spread<R>(-decades, decades, true);
+        for (R& x : positive) x = std::fabs(x);
+        const auto all = evaluate<R>(positive, 1);
+        CHECK(worst(all, values::inverse_root, [](W x) { return 1 / std::sqrt(x); }) <= (sizeof(R) == 8 ? 1.5 : 2));
+    }
+}
+
 TEMPLATE_TEST_CASE("sincos and sincospi err by at most 2.5 and 2 ulps on the device", "", double, float) {
     using R = TestType;
     using W = tests::wider<R>;

@@ -12,6 +12,7 @@ struct values {
     enum accessory {
         power,
         inverse,
+        inverse_root,
         sine,
         cosine,
         sine_alone,
@@ -33,6 +34,7 @@ struct values {
         const auto both = myriad::sincos(angle), both_pi = myriad::sincospi(angle);
         lane.accessory[power] = myriad::powr(angle, lane.parameter[y]);
         lane.accessory[inverse] = myriad::reciprocal(angle);
+        lane.accessory[inverse_root] = myriad::rsqrt(angle);
         lane.accessory[sine] = both.sine;
         lane.accessory[cosine] = both.cosine;
         lane.accessory[sine_alone] = myriad::sin(angle);

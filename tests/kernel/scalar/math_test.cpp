@@ -71,6 +71,7 @@ FUNCTION(log10, std::log10(x))
 FUNCTION(expm1, std::expm1(x))
 FUNCTION(log1p, std::log1p(x))
 FUNCTION(reciprocal, 1 / x)
+FUNCTION(rsqrt, 1 / std::sqrt(x))
 #undef FUNCTION
 
 // The two results of one call, as functions of their own.
@@ -148,6 +149,7 @@ void for_unary_functions(Check check) {
     check(expm1_function{});
     check(log1p_function{});
     check(reciprocal_function{});
+    check(rsqrt_function{});
 }
 template <class Check>
 void for_binary_functions(Check check) {

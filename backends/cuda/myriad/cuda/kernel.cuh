@@ -78,6 +78,8 @@ __device__ __forceinline__ std::int64_t first_instance() {
     MYRIAD_OPTIMISATION_BARRIER(block);  // else the address stays in registers through the loop
     if constexpr (threads == 1) {
         return block * blockDim.x + threadIdx.x;
+    } else if constexpr (thread_team<threads>::is_block) {
+        return block;
     } else {
         constexpr int teams = 32 / threads;
         return (static_cast<std::int64_t>(threadIdx.x / 32) * gridDim.x + block) * teams + threadIdx.x % 32 / threads;
@@ -146,17 +148,29 @@ inline constexpr int shared_parameter_bytes =
 /// (docs/gpu.md).
 template <class Model>
 constexpr int max_block_size() {
-    if constexpr (requires { Model::max_block_size; }) {
+    if constexpr (team_for<Model>::is_block) {
+        return team_size<Model>;
+    } else if constexpr (requires { Model::max_block_size; }) {
         return Model::max_block_size;
     } else {
         return 192;
     }
 }
 
+/// Whether nvcc should think of the latency of a single thread first, not of how many threads fit. Measured, NVIDIA
+/// H200, double precision, ms with and without: 8192 and 307 200 bubbles by dormand_prince_8 with PI control 184 and
+/// 232, 777 and 778; 524 288 instances of Lorenz by tsitouras_5 at 1e-8 0.625 and 0.645. Where it costs instead: in
+/// kernels with events, whose rare code is large (768 000 valves 304 and 288), teams (Lorenz 96 with 32 states 2.43
+/// and 2.26), fixed steps (768 000 instances of Lorenz by runge_kutta_4 2.24 and 2.23) and single precision (Lorenz 96
+/// with 16 states 0.182 and 0.173).
+template <class Model, class Method, class R>
+constexpr bool prefers_latency = sizeof(R) == sizeof(double) && is_adaptive<Method>&& team_size<Model> == 1 &&
+                                 !has_events<Model> && !has_stops<Model>;
+
 /// Blocks of that size that nvcc keeps registers for; with 0 as it finds best (docs/gpu.md).
 template <class Model, class Method, class R>
 constexpr int least_blocks() {
-    return fills_registers<Method, Model, R>() ? 1 : 0;
+    return fills_registers<Method, Model, R>() || prefers_latency<Model, Method, R> ? 1 : 0;
 }
 
 /// A kernel's launch parameters. For the constant bank, they include the shared parameters.

@@ -103,7 +103,9 @@ public:
 private:
     static constexpr std::int64_t cache_bytes = 128 * 1024;  // of a V100; later GPUs have more
     /// Of kernels with steps in shared memory: parts of a warp, unless teams share it out.
-    int smallest_block() const { return traits().team > 1 ? 32 : 8; }
+    int smallest_block() const { return traits().team > 1 ? std::max(traits().team, 32) : 8; }
+    /// Whether each block is one team.
+    bool team_is_block() const { return traits().team > 32; }
 
     const void* function() const {
         return facts_.shared_placement == place::shared_memory ? kernels_.integrate_staged : kernels_.integrate;
@@ -134,9 +136,12 @@ private:
                 wanted <= 1024 && traits().max_block_size < wanted
                     ? ", or let the model declare a larger `static constexpr int max_block_size`"
                     : "");
+        require(wanted == 0 || !team_is_block() || wanted == traits().team, "block_size is ", wanted,
+                ", but a block of this kernel is a team of ", traits().team, " threads", host::cure,
+                "leave block_size out");
         // The smallest block size among those that keep most threads resident, as the fewer threads end together, the
         // sooner others start. Where shared memory has no room for a warp, blocks are parts of one.
-        int first = wanted > 0 ? wanted : std::min(32, most / 32 * 32);
+        int first = wanted > 0 ? wanted : std::max(team_is_block() ? traits().team : 0, std::min(32, most / 32 * 32));
         consider_blocks(first, wanted > 0 ? wanted : most);
         if (traits().team > 1 && wanted == 0) consider_blocks(most / 32 * 32, most);
         while (facts_.block_size == 0 && wanted == 0 && keeps_steps_in_shared_memory() && first > smallest_block()) {
@@ -196,7 +201,7 @@ private:
     /// spread over all multiprocessors alone: a second warp would only take the first one's cache.
     int block_for(std::int64_t size) const {
         int block = chosen_block_;
-        if (chosen_by_user_) return block;
+        if (chosen_by_user_ || team_is_block()) return block;
         // Where one block takes the shared memory of a multiprocessor, for what all its teams read, all run at once.
         if (traits().team > 1 && facts_.blocks_per_multiprocessor == 1 && even_block(size) <= block)
             return even_block(size);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Teams: threads of a warp that integrate one instance together, each a part of its state. What they do together is
-// here; in kernels of one thread per instance all of it is nothing.
+// Teams: threads of a warp, or of several warps, that integrate one instance together, each a part of its state. What
+// they do together is here; in kernels of one thread per instance all of it is nothing.
 #pragma once
 
 #include <cstdint>
@@ -61,10 +61,21 @@ inline void* memory_of_block() { return simulated_team::memory(); }
 inline void* memory_of_block() { return nullptr; }
 #endif
 
-/// What `threads` threads of a warp do together. Each function is called by all of them, and returns the same in all.
+/// Most threads of a team: with 255 registers each, they fill a multiprocessor.
+inline constexpr int most_threads_of_team = 256;
+constexpr bool is_size_of_team(int threads) {
+    return threads > 0 && threads <= most_threads_of_team && (threads & (threads - 1)) == 0;
+}
+
+/// What `threads` threads do together. Each function is called by all of them, and returns the same in all. Up to 32
+/// are threads of one warp; more are all threads of a block.
 template <int threads>
 struct thread_team {
-    static_assert(threads > 0 && 32 % threads == 0, "the threads of a team divide a warp: 1, 2, 4, 8, 16 or 32");
+    static_assert(is_size_of_team(threads), "the threads of a team are a power of two, at most 256");
+    /// Whether its threads are those of a block, and the bytes at the begin of the block's shared memory by which they
+    /// exchange numbers, one for each warp.
+    static constexpr bool is_block = threads > 32;
+    static constexpr int exchange_bytes = is_block ? threads / 32 * static_cast<int>(sizeof(std::uint64_t)) : 0;
 
     /// The number of this thread within its team.
     static MYRIAD_FUNCTION int number_of_thread() {
@@ -94,7 +105,11 @@ struct thread_team {
     static MYRIAD_FUNCTION void synchronise() {
         if constexpr (threads > 1) {
 #if defined(__CUDA_ARCH__)
-            __syncwarp(mask());
+            if constexpr (is_block) {
+                __syncthreads();
+            } else {
+                __syncwarp(mask());
+            }
 #elif defined(MYRIAD_SIMULATED_TEAM) && !defined(__CUDACC__)
             simulated_team::synchronise(threads);
 #endif
@@ -108,9 +123,13 @@ struct thread_team {
             return holds;
         } else {
 #if defined(__CUDA_ARCH__)
-            return __all_sync(mask(), holds) != 0;
+            if constexpr (is_block) {
+                return __syncthreads_and(holds) != 0;
+            } else {
+                return __all_sync(mask(), holds) != 0;
+            }
 #else
-            return reduced(std::uint64_t{!holds}) == 0;
+            return largest_of(std::uint64_t{!holds}) == 0;
 #endif
         }
     }
@@ -132,9 +151,10 @@ struct thread_team {
         if constexpr (threads == 1) {
             return own;
         } else if constexpr (sizeof(S) == sizeof(std::uint32_t)) {
-            return __builtin_bit_cast(S, reduced(__builtin_bit_cast(std::uint32_t, own) & 0x7fffffffu));
+            return __builtin_bit_cast(S, largest_of(__builtin_bit_cast(std::uint32_t, own) & 0x7fffffffu));
         } else {
-            return __builtin_bit_cast(S, reduced(__builtin_bit_cast(std::uint64_t, own) & ~(std::uint64_t{1} << 63)));
+            return __builtin_bit_cast(S,
+                                      largest_of(__builtin_bit_cast(std::uint64_t, own) & ~(std::uint64_t{1} << 63)));
         }
     }
 
@@ -143,7 +163,15 @@ struct thread_team {
     static MYRIAD_FUNCTION T of_thread(int number, T own) {
         if constexpr (threads > 1) {
 #if defined(__CUDA_ARCH__)
-            own = __shfl_sync(mask(), own, number, threads);
+            if constexpr (is_block) {
+                T* const exchanged = static_cast<T*>(memory_of_block());
+                if (number_of_thread() == number) *exchanged = own;
+                __syncthreads();
+                own = *exchanged;
+                __syncthreads();  // all have read it
+            } else {
+                own = __shfl_sync(mask(), own, number, threads);
+            }
 #elif defined(MYRIAD_SIMULATED_TEAM) && !defined(__CUDACC__)
             std::uint64_t bits = 0;
             __builtin_memcpy(&bits, &own, sizeof own);
@@ -170,7 +198,29 @@ private:
         }
     }
 #endif
+    template <int>
+    friend struct thread_team;
     /// The largest of the threads' unsigned integers.
+    template <class U>
+    static MYRIAD_FUNCTION U largest_of(U own) {
+#if defined(__CUDA_ARCH__)
+        if constexpr (is_block) {
+            constexpr int warps = threads / 32;
+            U* const of_warps = static_cast<U*>(memory_of_block());
+            own = thread_team<32>::reduced(own);
+            if (number_of_thread() % 32 == 0) of_warps[number_of_thread() / 32] = own;
+            __syncthreads();
+            own = thread_team<warps>::reduced(of_warps[number_of_thread() % warps]);
+            __syncthreads();  // all have read them
+            return own;
+        } else {
+            return reduced(own);
+        }
+#else
+        return reduced(own);
+#endif
+    }
+    /// The same in a warp, or in a simulated team.
     template <class U>
     static MYRIAD_FUNCTION U reduced(U own) {
 #if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800

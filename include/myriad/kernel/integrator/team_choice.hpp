@@ -34,6 +34,11 @@ inline constexpr int most_states_of_one_thread = sizeof(R) == sizeof(double) ? 1
 /// and 2.52 and 2.46. For 4, 8 and 16 threads, 32 states in double precision 2.65, 2.26 and 2.43, in single precision
 /// 0.76, 0.72 and 0.81.
 inline constexpr int most_state_bytes_of_thread = 32, smallest_chosen_team = 8;
+/// Up to so many bytes in each of its threads, a warp is faster than several, which wait for each other at barriers of
+/// the block: 256 states in double precision 18.0 ms with 32 threads, 23.4 with 64 and 24.8 with 128 (131 072
+/// instances, NVIDIA H200). Beyond, a warp has not enough registers: 512 states 13.8 ms with 32, 12.3 with 64, 10.9
+/// with 128 and 12.4 with 256, 1024 states 35.0 with 64, 23.7 with 128 and 23.3 with 256 (32 768 instances).
+inline constexpr int most_state_bytes_in_warp = 32 * 64;
 
 /// The number of threads that integrate an instance: as units declare it, `static constexpr int threads_per_instance =
 /// 16;`, or by the number of states.
@@ -46,9 +51,10 @@ constexpr int threads_per_instance() {
     } else if constexpr (n_state<Model> <= most_states_of_one_thread<R>) {
         return 1;
     } else {
+        constexpr int bytes = n_state<Model> * static_cast<int>(sizeof(R));
+        constexpr int most = bytes > most_state_bytes_in_warp ? most_threads_of_team : 32;
         int threads = smallest_chosen_team;
-        while (threads < 32 && n_state<Model> * static_cast<int>(sizeof(R)) > threads * most_state_bytes_of_thread)
-            threads *= 2;
+        while (threads < most && bytes > threads * most_state_bytes_of_thread) threads *= 2;
         while (threads / 2 >= Model::n_unit) threads /= 2;  // more have nothing to do
         return threads;
     }

@@ -10,6 +10,7 @@
 
 #include "myriad/kernel/core/static_for.hpp"
 #include "myriad/kernel/core/status.hpp"
+#include "myriad/kernel/core/team.hpp"
 #include "myriad/kernel/model/hooks.hpp"
 #include "myriad/kernel/model/unit_views.hpp"
 #include "myriad/kernel/scalar/math.hpp"
@@ -344,8 +345,7 @@ constexpr bool check_units() {
     static_assert(!has_triggers<Unit>, "coupled units have no triggers: give an event an action");
     static_assert(!has_jacobian<Unit>, "coupled units have no jacobian: it comes from rhs by dual numbers");
     constexpr int team = declared_team<Unit>();
-    static_assert(team == 0 || (team > 0 && 32 % team == 0),
-                  "threads_per_instance does not divide a warp: it is 1, 2, 4, 8, 16 or 32");
+    static_assert(team == 0 || is_size_of_team(team), "threads_per_instance is not a power of two from 1 to 256");
     return check_couplings<Unit, units>();
 }
 

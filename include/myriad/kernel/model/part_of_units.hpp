@@ -157,9 +157,11 @@ struct part_of_units : part_summaries<Whole, (Whole::n_unit + threads - 1) / thr
 
     template <class R>
     static constexpr int stride = team_stride<Whole, threads, R>();
-    /// Of shared memory: for the tolerances of all states, once in a block, and for each thread.
+    /// Of shared memory: for what large teams exchange and the tolerances of all states, once in a block, and for each
+    /// thread.
     template <class R>
-    static constexpr int bytes_of_block = 2 * detail::n_state<Whole>* static_cast<int>(sizeof(R));
+    static constexpr int bytes_of_block = together::exchange_bytes +
+                                          2 * detail::n_state<Whole>* static_cast<int>(sizeof(R));
     template <class R>
     static constexpr int bytes_of_thread = stride<R> / threads* static_cast<int>(sizeof(R));
 
@@ -177,11 +179,11 @@ struct part_of_units : part_summaries<Whole, (Whole::n_unit + threads - 1) / thr
     /// The tolerances, relative ones first.
     template <class R>
     static MYRIAD_FUNCTION R* tolerances() {
-        return static_cast<R*>(memory_of_block());
+        return static_cast<R*>(memory_of_block()) + together::exchange_bytes / static_cast<int>(sizeof(R));
     }
     template <class R>
     static MYRIAD_FUNCTION R* memory() {
-        return static_cast<R*>(memory_of_block()) + 2 * detail::n_state<Whole> + together::number_of_team() * stride<R>;
+        return tolerances<R>() + 2 * detail::n_state<Whole> + together::number_of_team() * stride<R>;
     }
 
     /// Copies the tolerances there, by `all` threads with consecutive numbers; they are to wait for each other then.

@@ -255,6 +255,10 @@ struct functions<dual<S, Derivative>> {
         sine.derivative = constant(pi) * x.derivative * cosine.value;
         cosine.derivative = -constant(pi) * x.derivative * sine.value;
     }
+    static MYRIAD_FUNCTION D rsqrt(const D& x) {
+        const S r = f::rsqrt(x.value);
+        return D(r, constant(real(-0.5)) * x.derivative * (r * r * r));
+    }
     static MYRIAD_FUNCTION D reciprocal(const D& x) {
         const S r = f::reciprocal(x.value);
         return D(r, -x.derivative * r * r);

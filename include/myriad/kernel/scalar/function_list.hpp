@@ -7,7 +7,7 @@
 #define MYRIAD_SMOOTH_FUNCTIONS(each)                                                                                  \
     each(sqrt) each(cbrt) each(abs) each(sin) each(cos) each(tan) each(asin) each(acos) each(atan) each(sinpi)         \
         each(cospi) each(sinh) each(cosh) each(tanh) each(exp) each(exp2) each(log) each(log2) each(log10) each(expm1) \
-            each(log1p) each(reciprocal)
+            each(log1p) each(reciprocal) each(rsqrt)
 /// Functions of one number that are constant wherever they have a derivative.
 #define MYRIAD_STEP_FUNCTIONS(each) each(floor) each(round) each(rint)
 /// Functions of two numbers with derivatives by both.

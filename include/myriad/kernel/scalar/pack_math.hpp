@@ -83,6 +83,7 @@ struct functions<pack<T, batches>> {
     MYRIAD_UNARY(sqrt, xsimd::sqrt(x.parts[i]))
     MYRIAD_UNARY(abs, xsimd::abs(x.parts[i]))
     MYRIAD_UNARY(reciprocal, xsimd::batch<T>(T(1)) / x.parts[i])
+    MYRIAD_UNARY(rsqrt, xsimd::batch<T>(T(1)) / xsimd::sqrt(x.parts[i]))
     // Without SSE4.1, xsimd's floor loses the sign of zero; the bit operation restores it.
     MYRIAD_UNARY(floor, xsimd::floor(x.parts[i]) | (x.parts[i] & xsimd::batch<T>(-T(0))))
     MYRIAD_UNARY(round, xsimd::round(x.parts[i]))
