@@ -6,6 +6,7 @@
 #include "myriad/kernel/controller/norm.hpp"
 #include "myriad/kernel/controller/step_decision.hpp"
 #include "myriad/kernel/state/integration_state.hpp"
+#include "myriad/kernel/stepper/component_loop.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
@@ -106,10 +107,12 @@ struct adaptive_stepping {
             const mask moved = rejected & (s.h != S(R(0)));
             s.steps.last_not_finite = select(moved, !finite, s.steps.last_not_finite);
             // Where the right-hand side itself is not finite, there is no Jacobian.
-            if constexpr (solves_linear_systems<Method>)
-                s.steps.last_singular = select(
-                    moved & !finite, trial.singular & all_finite<most_components_written_out<Method>>(trial.k[0]),
-                    s.steps.last_singular);
+            if constexpr (solves_linear_systems<Method>) {
+                mask singular = trial.singular;
+                detail::each_component<Method, n_state<Model>>(
+                    [&](int c) MYRIAD_LAMBDA { singular = singular & is_finite(trial.k[0][c]); });
+                s.steps.last_singular = select(moved & !finite, singular, s.steps.last_singular);
+            }
             stuck = rejected & (abs(s.h) <= S(args.minimum_step) + rounding);
         }
         S next = s.h * S(factor);

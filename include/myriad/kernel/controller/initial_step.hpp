@@ -6,6 +6,7 @@
 #include "myriad/kernel/controller/fast_power.hpp"
 #include "myriad/kernel/controller/norm.hpp"
 #include "myriad/kernel/state/integration_state.hpp"
+#include "myriad/kernel/stepper/component_loop.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
@@ -18,13 +19,12 @@ MYRIAD_FUNCTION S step_by_slope(const kernel_arguments<Model, real_of<S>>& args,
                                 const integration_state<Model, Method, S>& s, const vec<S, n_state<Model>>& slope) {
     using R = real_of<S>;
     S rate = S(R(0));  // of the fastest component, in parts of its size
-    MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
-    for (int c = 0; c < n_controlled<Model>; ++c) {
+    detail::each_component<Method, n_controlled<Model>>([&](int c) MYRIAD_LAMBDA {
         const R rtol = detail::relative_tolerance_of(args, c), atol = detail::absolute_tolerance_of(args, c);
         S tolerance = larger(S(rtol) * abs(s.data.y[c]), S(atol));
         const S relative = S(rtol) * abs(slope[c]) / tolerance;
         rate = select(tolerance > S(smallest_normal_of<R>), larger(relative, rate), rate);
-    }
+    });
     rate = team_for<Model>::largest(rate);
     const S usual = S(args.step), part = S(R(0.1)) * abs(s.data.t_end - s.data.t);
     const S most = select(part <= S(largest_of<R>), part, S(R(100)) * usual);
@@ -43,25 +43,23 @@ MYRIAD_FUNCTION S step_by_curvature(const kernel_arguments<Model, real_of<S>>& a
     constexpr int n = n_state<Model>, controlled = n_controlled<Model>;
     const S direction = copysign(S(R(1)), s.data.t_end - s.data.t);
     S scale[controlled], d0 = S(R(0)), d1 = S(R(0)), d2 = S(R(0));
-    MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
-    for (int c = 0; c < controlled; ++c) {
+    detail::each_component<Method, controlled>([&](int c) MYRIAD_LAMBDA {
         scale[c] =
             fma(S(detail::relative_tolerance_of(args, c)), abs(s.data.y[c]), S(detail::absolute_tolerance_of(args, c)));
         if constexpr (scales_tolerances<Method>) scale[c] = scale[c] * s.steps.tolerance_scale;
         d0 = larger(abs(s.data.y[c]) / scale[c], d0);
         d1 = larger(abs(slope0[c]) / scale[c], d1);
-    }
+    });
     d0 = team_for<Model>::largest(d0);
     d1 = team_for<Model>::largest(d1);
     const mask_of<S> tiny = (d0 < S(R(1e-5))) | (d1 < S(R(1e-5)));
     const S h0 = select(tiny, S(R(1e-6)), S(R(0.01)) * d0 / d1);
     vec<S, n> y;
-    MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
-    for (int c = 0; c < n; ++c) y[c] = fma(direction * h0, slope0[c], s.data.y[c]);
+    detail::each_component<Method, n>([&](int c) MYRIAD_LAMBDA { y[c] = fma(direction * h0, slope0[c], s.data.y[c]); });
     const auto slope = detail::evaluate_rhs<Model>(fma(direction, h0, s.data.t), y, s.data);
     s.extra_evaluations = count_where(open, s.extra_evaluations);
-    MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
-    for (int c = 0; c < controlled; ++c) d2 = larger(abs(slope[c] - slope0[c]) / (scale[c] * h0), d2);
+    detail::each_component<Method, controlled>(
+        [&](int c) MYRIAD_LAMBDA { d2 = larger(abs(slope[c] - slope0[c]) / (scale[c] * h0), d2); });
     d2 = team_for<Model>::largest(d2);
     const S most = larger(d1, d2);
     const S power = S(fast_power(S(R(0.01)) / most, S(R(1.0 / (estimate_order<Method> + 1)))));

@@ -6,6 +6,7 @@
 #include "myriad/kernel/methods/controller_policies.hpp"
 #include "myriad/kernel/scalar/control_number.hpp"
 #include "myriad/kernel/state/kernel_arguments.hpp"
+#include "myriad/kernel/stepper/component_loop.hpp"
 #include "myriad/kernel/stepper/step.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
@@ -83,11 +84,10 @@ MYRIAD_FUNCTION S largest_ratio(const vec<S, n>& a) {
     S largest = a[0], sum = a[0];
     // The only state of a thread of a team is changed as those of others are: the same bits for every size of team.
     if constexpr (n == 1 && all > 1) largest = larger_scale(largest, largest);
-    MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
-    for (int c = 1; c < n; ++c) {
+    detail::each_component<Method, 1, n>([&](int c) MYRIAD_LAMBDA {
         largest = larger_scale(a[c], largest);
         sum = sum + a[c];
-    }
+    });
     if constexpr (n == 1 || larger_scale_keeps_nan<S>) return largest;
     return select(sum == sum, largest, sum);
 }
@@ -104,8 +104,7 @@ MYRIAD_FUNCTION error_scale<S, n_controlled<Model>> scale_of_errors(const kernel
                                                                     const vec<S, n_state<Model>>& y1) {
     error_scale<S, n_controlled<Model>> scale;
     S largest = S(real_of<S>(0));  // may skip NaN
-    MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
-    for (int c = 0; c < n_controlled<Model>; ++c) {
+    detail::each_component<Method, n_controlled<Model>>([&](int c) MYRIAD_LAMBDA {
         const S atol = S(detail::absolute_tolerance_of(args, c)), rtol = S(detail::relative_tolerance_of(args, c));
         const S size = larger_magnitude(y[c], y1[c]);
         if constexpr (!tells_infinity<S>) largest = c == 0 ? size : larger_scale(largest, size);
@@ -114,12 +113,12 @@ MYRIAD_FUNCTION error_scale<S, n_controlled<Model>> scale_of_errors(const kernel
         } else {
             scale.of[c] = larger_scale(atol, rtol * size);
         }
-    }
+    });
     scale.finite = tells_infinity<S> ? mask_of<S>(true) : largest <= S(largest_of<real_of<S>>);
     if constexpr (n_uncontrolled < Model >> 0) {
         S others = S(real_of<S>(0));  // NaN if one of them is not finite
-        MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
-        for (int c = n_controlled<Model>; c < n_state<Model>; ++c) others = fma(S(real_of<S>(0)), y1[c], others);
+        detail::each_component<Method, n_controlled<Model>, n_state<Model>>(
+            [&](int c) MYRIAD_LAMBDA { others = fma(S(real_of<S>(0)), y1[c], others); });
         scale.finite = scale.finite & (others == others);
     }
     return scale;
@@ -137,16 +136,14 @@ MYRIAD_FUNCTION control_of<S> error_over_tolerance(const vec<S, n>& scale, const
         const auto ratio = [&](int c) MYRIAD_LAMBDA { return static_cast<C>(error_ratio(factor * sum(c), scale[c])); };
         const auto add = [&](const C& next) MYRIAD_LAMBDA { squares = fma(next, next, squares); };
         if constexpr (team_size<Model> == 1) {
-            MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
-            for (int c = 0; c < n; ++c) add(ratio(c));
+            detail::each_component<Method, n>([&](int c) MYRIAD_LAMBDA { add(ratio(c)); });
         } else {
             as_part<Model>::template in_order<S>(ratio, add);
         }
         return sqrt(squares * C(R(1.0 / all)));
     } else {
         vec<S, n> ratio;
-        MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
-        for (int c = 0; c < n; ++c) ratio[c] = error_ratio(sum(c), scale[c]);
+        detail::each_component<Method, n>([&](int c) MYRIAD_LAMBDA { ratio[c] = error_ratio(sum(c), scale[c]); });
         return static_cast<C>(largest_ratio<Method, all>(ratio) * abs(factor));
     }
 }

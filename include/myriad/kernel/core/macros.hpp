@@ -33,8 +33,8 @@
 #define MYRIAD_RECONVERGE __syncwarp()
 /// Unrolls the following loop; in device code only up to 64 iterations, so that larger states stay loops.
 #define MYRIAD_UNROLL _Pragma("unroll 64")
-/// The same up to another number of iterations, a constant expression.
-#define MYRIAD_UNROLL_UP_TO(count) MYRIAD_PRAGMA(unroll(count))
+/// The same up to other numbers of iterations, literal numbers, in device code and on the CPU.
+#define MYRIAD_UNROLL_UP_TO(on_gpu, on_cpu) MYRIAD_PRAGMA(unroll(on_gpu))
 #define MYRIAD_PRAGMA(text) _Pragma(#text)
 /// In device code, unrolls the following long loop by a constant expression: over steps, in which constants are
 /// reloaded in every iteration, or over values in memory, whose loads are then under way together.
@@ -49,7 +49,7 @@
 #else
 #define MYRIAD_RECONVERGE static_cast<void>(0)
 #define MYRIAD_UNROLL
-#define MYRIAD_UNROLL_UP_TO(count)
+#define MYRIAD_UNROLL_UP_TO(on_gpu, on_cpu)
 #define MYRIAD_UNROLL_BY(count)
 #define MYRIAD_ROLLED
 #define MYRIAD_UNROLL_ON_GPU
@@ -94,12 +94,14 @@
 #define MYRIAD_ROUNDED_PRODUCT(a, b) ((a) * (b))
 #if defined(__clang__)
 #define MYRIAD_UNROLL _Pragma("clang loop unroll(full)")
+#define MYRIAD_UNROLL_UP_TO(on_gpu, on_cpu) MYRIAD_PRAGMA(clang loop unroll_count(on_cpu))
 #define MYRIAD_UNROLL_ON_GPU _Pragma("clang loop unroll(disable)")
 #else
 #define MYRIAD_UNROLL _Pragma("GCC unroll 128")
+#define MYRIAD_UNROLL_UP_TO(on_gpu, on_cpu) MYRIAD_PRAGMA(GCC unroll on_cpu)
 #define MYRIAD_UNROLL_ON_GPU _Pragma("GCC unroll 1")
 #endif
-#define MYRIAD_UNROLL_UP_TO(count) MYRIAD_UNROLL
+#define MYRIAD_PRAGMA(text) _Pragma(#text)
 #define MYRIAD_BACKEND_HEADER "myriad/openmp/run.hpp"
 #if defined(__AVX512F__)
 #define MYRIAD_TARGET openmp_avx512

@@ -17,6 +17,7 @@
 #include "myriad/kernel/output/sampler.hpp"
 #include "myriad/kernel/output/summariser.hpp"
 #include "myriad/kernel/state/integration_state.hpp"
+#include "myriad/kernel/stepper/component_loop.hpp"
 #include "myriad/kernel/stepper/step.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
@@ -176,8 +177,8 @@ struct integrator {
         if constexpr (!is_pack<S>) {
             if (!accepted) return;
         }
-        MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
-        for (int c = 0; c < n; ++c) s.data.y[c] = select(accepted, trial.y[c], s.data.y[c]);
+        detail::each_component<Method, n>(
+            [&](int c) MYRIAD_LAMBDA { s.data.y[c] = select(accepted, trial.y[c], s.data.y[c]); });
         if constexpr (shows_step) s.data.h = select(accepted, s.h, s.data.h);
         stepping_type{args, s}.advance(accepted, end_time(), events.fired_lanes());
         s.slopes.accept(accepted, trial);

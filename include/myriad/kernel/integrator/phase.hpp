@@ -10,6 +10,7 @@
 #include "myriad/kernel/output/sampler.hpp"
 #include "myriad/kernel/output/summariser.hpp"
 #include "myriad/kernel/state/integration_state.hpp"
+#include "myriad/kernel/stepper/component_loop.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
@@ -107,8 +108,8 @@ private:
 
     MYRIAD_FUNCTION void load(int i) {
         const std::int64_t index = s.instance[i];
-        MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
-        for (int c = 0; c < n; ++c) set_lane(s.data.y[c], i, at(args.state, detail::whole_state<Model>(c), i));
+        detail::each_component<Method, n>(
+            [&](int c) MYRIAD_LAMBDA { set_lane(s.data.y[c], i, at(args.state, detail::whole_state<Model>(c), i)); });
         if constexpr (team_size < Model >> 1) as_part<Model>::load(args, index);
         MYRIAD_UNROLL
         for (int c = 0; c < n_parameter<Model>; ++c) set_lane(s.data.parameter[c], i, at(args.parameter, c, i));
@@ -132,8 +133,8 @@ private:
 
     MYRIAD_FUNCTION void store(int i) const {
         const std::int64_t index = s.instance[i];
-        MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
-        for (int c = 0; c < n; ++c) at(args.state, detail::whole_state<Model>(c), i) = get_lane(s.data.y[c], i);
+        detail::each_component<Method, n>(
+            [&](int c) MYRIAD_LAMBDA { at(args.state, detail::whole_state<Model>(c), i) = get_lane(s.data.y[c], i); });
         if constexpr (writes_parameters<Model>) {
             MYRIAD_UNROLL
             for (int c = 0; c < n_parameter<Model>; ++c) at(args.parameter, c, i) = get_lane(s.data.parameter[c], i);
@@ -298,11 +299,10 @@ private:
             return array[(static_cast<std::int64_t>(column) * r.phases + row) * args.size + s.instance[i]];
         };
         if (r.time_column >= 0) to(r.values, r.time_column) = get_lane(s.data.t, i);
-        MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
-        for (int c = 0; c < n; ++c) {
+        detail::each_component<Method, n>([&](int c) MYRIAD_LAMBDA {
             const int column = args.state_column[detail::whole_state<Model>(c)];
             if (column >= 0) to(r.values, column) = get_lane(s.data.y[c], i);
-        }
+        });
         if constexpr (team_size < Model >> 1) as_part<Model>::record(args, to);
         MYRIAD_UNROLL
         for (int c = 0; c < n_accessory<Model>; ++c)

@@ -29,16 +29,17 @@ constexpr bool runs_in_teams() {
 /// these have not been measured.
 template <class R>
 inline constexpr int most_states_of_one_thread = sizeof(R) == sizeof(double) ? 16 : 24;
-/// Most bytes of the state that a thread of a team takes, and the smallest team. The same, for 4 and 8 states in each
-/// thread: 64 states in double precision 4.51 and 4.81, in single precision 1.32 and 1.30; 128 states 8.78 and 9.20,
-/// and 2.52 and 2.46. For 4, 8 and 16 threads, 32 states in double precision 2.65, 2.26 and 2.43, in single precision
-/// 0.76, 0.72 and 0.81.
-inline constexpr int most_state_bytes_of_thread = 32, smallest_chosen_team = 8;
+/// Most states that a thread of a team takes while the team is smaller than a warp, and the smallest team. Lorenz 96 by
+/// tsitouras_5, 131 072 instances, NVIDIA H200, ms for 8, 16 and 32 threads: in double precision 32 states 2.27, 2.58
+/// and -, 64 states 4.85, 4.47 and 4.83, 128 states -, 9.25 and 8.72; in single precision 0.69, 0.93 and -, 1.38, 1.26
+/// and 1.66, and -, 2.55 and 2.39.
+inline constexpr int most_states_of_team_thread = 4, smallest_chosen_team = 8;
 /// Up to so many bytes in each of its threads, a warp is faster than several, which wait for each other at barriers of
-/// the block: 256 states in double precision 18.0 ms with 32 threads, 23.4 with 64 and 24.8 with 128 (131 072
-/// instances, NVIDIA H200). Beyond, a warp has not enough registers: 512 states 13.8 ms with 32, 12.3 with 64, 10.9
-/// with 128 and 12.4 with 256, 1024 states 35.0 with 64, 23.7 with 128 and 23.3 with 256 (32 768 instances).
-inline constexpr int most_state_bytes_in_warp = 32 * 64;
+/// the block. The same, in double precision, with 32, 64 and 128 threads: 256 states 18.0, 23.4 and 24.8, 384 states
+/// 28.0, 33.6 and 34.0. Beyond, a warp has not enough registers, and a block has about 32 bytes in each thread. 32 768
+/// instances, with 32, 64, 128 and 256 threads: 512 states 13.8, 12.3, 10.9 and 12.4, 1024 states -, 35.0, 23.7 and
+/// 23.3, in single precision -, 6.9, 6.1 and 6.9.
+inline constexpr int most_bytes_of_warp_thread = 96, bytes_of_block_thread = 32;
 
 /// The number of threads that integrate an instance: as units declare it, `static constexpr int threads_per_instance =
 /// 16;`, or by the number of states.
@@ -51,10 +52,11 @@ constexpr int threads_per_instance() {
     } else if constexpr (n_state<Model> <= most_states_of_one_thread<R>) {
         return 1;
     } else {
-        constexpr int bytes = n_state<Model> * static_cast<int>(sizeof(R));
-        constexpr int most = bytes > most_state_bytes_in_warp ? most_threads_of_team : 32;
+        constexpr int states = n_state<Model>, bytes = states * static_cast<int>(sizeof(R));
         int threads = smallest_chosen_team;
-        while (threads < most && bytes > threads * most_state_bytes_of_thread) threads *= 2;
+        while (threads < 32 && states > threads * most_states_of_team_thread) threads *= 2;
+        if (bytes > 32 * most_bytes_of_warp_thread)
+            while (threads < most_threads_of_team && bytes > threads * bytes_of_block_thread) threads *= 2;
         while (threads / 2 >= Model::n_unit) threads /= 2;  // more have nothing to do
         return threads;
     }

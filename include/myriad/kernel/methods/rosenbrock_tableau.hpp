@@ -6,6 +6,16 @@
 #include <array>
 #include <cstddef>
 
+namespace myriad::detail {
+
+/// A method whose coefficients are a rosenbrock_tableau.
+template <class Method>
+concept rosenbrock_method = requires {
+    Method::tableau().coupling;
+};
+
+}  // namespace myriad::detail
+
 namespace myriad {
 
 /// With u_i = h sum_j gamma_ij k_j the stages are

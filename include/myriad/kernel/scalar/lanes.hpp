@@ -16,11 +16,11 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 template <class S>
 using count_of = std::conditional_t<lanes_of<S> == 1, std::int32_t, S>;
 
-/// Whether every component is finite, lane by lane. Device code is a loop beyond so many components.
-template <int most_written_out = 32, class S, int n>
+/// Whether every component is finite, lane by lane.
+template <class S, int n>
 MYRIAD_FUNCTION mask_of<S> all_finite(const vec<S, n>& y) {
     mask_of<S> finite = is_finite(y[0]);
-    MYRIAD_UNROLL_UP_TO(most_written_out)
+    MYRIAD_UNROLL_UP_TO(32, 128)
     for (int c = 1; c < n; ++c) finite = finite & is_finite(y[c]);
     return finite;
 }

@@ -7,6 +7,7 @@
 #include "myriad/kernel/model/hooks.hpp"
 #include "myriad/kernel/model/summaries.hpp"
 #include "myriad/kernel/scalar/lanes.hpp"
+#include "myriad/kernel/stepper/component_loop.hpp"
 #include "myriad/kernel/stepper/dense_output.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
@@ -100,8 +101,8 @@ public:
         const mask needed = lanes & !end_known_;
         if (any(needed)) {
             const state fresh = detail::evaluate_rhs<Model>(t1, y1, at);
-            MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
-            for (int c = 0; c < n; ++c) end_[c] = select(needed, fresh[c], end_[c]);
+            detail::each_component<Method, n>([&](int c)
+                                                  MYRIAD_LAMBDA { end_[c] = select(needed, fresh[c], end_[c]); });
             evaluations = count_where(needed, evaluations);
             end_known_ = end_known_ | needed;
         }
@@ -112,14 +113,14 @@ public:
     MYRIAD_FUNCTION void accept(const mask& accepted, const trial_step<Method, S, n>& trial) {
         if constexpr (!keeps_start) return;
         if constexpr (Method::first_same_as_last) {
-            MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
-            for (int c = 0; c < n; ++c) start_[c] = select(accepted, trial.slope_end()[c], start_[c]);
+            detail::each_component<Method, n>(
+                [&](int c) MYRIAD_LAMBDA { start_[c] = select(accepted, trial.slope_end()[c], start_[c]); });
         } else {
             start_known_ = start_known_ & !accepted;
             if constexpr (knows_end) {
                 const mask known = accepted & end_known_;
-                MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
-                for (int c = 0; c < n; ++c) start_[c] = select(known, end_[c], start_[c]);
+                detail::each_component<Method, n>([&](int c)
+                                                      MYRIAD_LAMBDA { start_[c] = select(known, end_[c], start_[c]); });
                 start_known_ = start_known_ | known;
             }
         }
@@ -131,8 +132,8 @@ private:
         const mask needed = lanes & !start_known_;
         if (!any(needed)) return;
         const state fresh = detail::evaluate_rhs<Model>(t, at.y, at);
-        MYRIAD_UNROLL_UP_TO(most_components_written_out<Method>)
-        for (int c = 0; c < n; ++c) start_[c] = select(needed, fresh[c], start_[c]);
+        detail::each_component<Method, n>([&](int c)
+                                              MYRIAD_LAMBDA { start_[c] = select(needed, fresh[c], start_[c]); });
         evaluations = count_where(needed, evaluations);
         start_known_ = start_known_ | needed;
     }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <new>
 
 #include "myriad/kernel/core/static_for.hpp"
 #include "myriad/kernel/core/vec.hpp"
@@ -153,7 +154,7 @@ template <class Method, int row, class S, int n>
 MYRIAD_FUNCTION vec<S, n> combine(const vec<S, n>& y, const S& h, const vec<vec<S, n>, Method::stages>& k) {
     const S scale = h * S(detail::first_operand<Method, row, real_of<S>>());
     vec<S, n> out;
-    MYRIAD_UNROLL
+    MYRIAD_UNROLL_UP_TO(64, 16)
     for (int c = 0; c < n; ++c) out[c] = fma(scale, detail::scaled_sum<Method, row>(k, c), y[c]);
     return out;
 }
@@ -168,14 +169,27 @@ MYRIAD_FUNCTION S error_sum(const trial_step<Method, S, n>& trial, int component
     return detail::scaled_sum<Method, row>(trial.k, component);
 }
 
-/// to = from. Component by component in large packs: g++ copied those through memory, by string instructions.
+/// Whether g++ copies such vectors through memory, by string instructions.
+template <class S, int n>
+inline constexpr bool is_large_in_packs = lanes_of<S> > 1 && sizeof(vec<S, n>) > 1024;
+
+/// to = from, component by component in large packs.
 template <class S, int n>
 MYRIAD_FUNCTION void copy_components(vec<S, n>& to, const vec<S, n>& from) {
-    if constexpr (lanes_of < S >> 1 && sizeof(to) > 1024) {
-        MYRIAD_UNROLL
+    if constexpr (is_large_in_packs<S, n>) {
+        MYRIAD_UNROLL_UP_TO(64, 16)
         for (int c = 0; c < n; ++c) to[c] = from[c];
     } else {
         to = from;
+    }
+}
+/// to = make(), which large packs write there at once instead of copying it.
+template <class S, int n, class Make>
+MYRIAD_FUNCTION void put_result(vec<S, n>& to, Make&& make) {
+    if constexpr (is_large_in_packs<S, n>) {
+        ::new (static_cast<void*>(&to)) vec<S, n>(make());
+    } else {
+        to = make();
     }
 }
 
@@ -192,7 +206,7 @@ inline constexpr bool is_unseen_stage = [] {
 template <class Method, int stage, class S, int n>
 MYRIAD_FUNCTION void see_stage_before(vec<vec<S, n>, Method::stages>& k) {
     if constexpr (is_unseen_stage<Method, stage - 1>) {
-        MYRIAD_UNROLL
+        MYRIAD_UNROLL_UP_TO(64, 16)
         for (int c = 0; c < n; ++c) k[stage][c] = fma(S(-real_of<S>(0)), abs(k[stage - 1][c]), k[stage][c]);
     }
 }
@@ -210,7 +224,7 @@ MYRIAD_FUNCTION void explicit_rk_step(const S& t, const S& h, const S& t1, const
     vec<S, n> sum;
     const auto add_stage = [&](auto j) MYRIAD_LAMBDA {
         constexpr int stage = decltype(j)::value, first = first_stage<Method, last>;
-        MYRIAD_UNROLL
+        MYRIAD_UNROLL_UP_TO(64, 16)
         for (int c = 0; c < n; ++c) {
             if constexpr (stage == first) {
                 sum[c] = trial.k[stage][c];
@@ -222,14 +236,16 @@ MYRIAD_FUNCTION void explicit_rk_step(const S& t, const S& h, const S& t1, const
     if constexpr (!Method::first_same_as_last) add_stage(constant_index<0>{});
     static_for<1, Method::stages>([&](auto i) MYRIAD_LAMBDA {
         constexpr int stage = decltype(i)::value;
-        const auto argument = detail::combine<Method, stage>(y, h, trial.k);
-        if constexpr (Method::first_same_as_last && stage == last - 1) {
-            detail::copy_components(trial.y, argument);
-            detail::copy_components(trial.k[stage], detail::evaluate_rhs<Model>(t1, argument, p));
+        constexpr bool at_end = Method::first_same_as_last && stage == last - 1;
+        const auto argument = [&]() MYRIAD_LAMBDA { return detail::combine<Method, stage>(y, h, trial.k); };
+        const auto put_slopes = [&](const S& at, const vec<S, n>& of) MYRIAD_LAMBDA {
+            detail::put_result(trial.k[stage], [&]() MYRIAD_LAMBDA { return detail::evaluate_rhs<Model>(at, of, p); });
+        };
+        if constexpr (at_end) {
+            detail::put_result(trial.y, argument);
+            put_slopes(t1, trial.y);
         } else {
-            detail::copy_components(
-                trial.k[stage],
-                detail::evaluate_rhs<Model>(fma(S(detail::node_operand<Method, stage, R>()), h, t), argument, p));
+            put_slopes(fma(S(detail::node_operand<Method, stage, R>()), h, t), argument());
         }
         detail::see_stage_before<Method, stage>(trial.k);
         if constexpr (in_memory) MYRIAD_MEMORY_BARRIER;
@@ -237,7 +253,7 @@ MYRIAD_FUNCTION void explicit_rk_step(const S& t, const S& h, const S& t1, const
     });
     if constexpr (!Method::first_same_as_last) {
         const S scale = h * S(detail::first_operand<Method, last, R>());
-        MYRIAD_UNROLL
+        MYRIAD_UNROLL_UP_TO(64, 16)
         for (int c = 0; c < n; ++c) trial.y[c] = fma(scale, sum[c], y[c]);
     }
 }

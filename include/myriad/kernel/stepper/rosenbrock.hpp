@@ -5,6 +5,7 @@
 
 #include "myriad/kernel/core/static_for.hpp"
 #include "myriad/kernel/core/vec.hpp"
+#include "myriad/kernel/methods/rosenbrock_tableau.hpp"
 #include "myriad/kernel/methods/weights.hpp"
 #include "myriad/kernel/model/jacobian.hpp"
 #include "myriad/kernel/scalar/math.hpp"
@@ -14,20 +15,6 @@
 #include "myriad/kernel/stepper/sparse_lu.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
-
-/// A method whose coefficients are a rosenbrock_tableau.
-template <class Method>
-concept rosenbrock_method = requires {
-    Method::tableau().coupling;
-};
-
-/// Components up to which device code writes out the loops over a state. Beside factors that are written out, a loop
-/// keeps a copy of every vector in local memory: a ring of 64 states took 14.1 kB a thread
-/// and 119 ms for 1000 instances, and written out 9.4 kB and 87 ms (NVIDIA H200, rodas_5p). Explicit steps of about 60
-/// states are too large for nvcc when written out, and all lie in local memory: 65 536 instances of Lorenz 96 with 64
-/// states, by dormand_prince_5, took 62 ms written out and 16 as loops; with 48 states 4.8 and 8.4 (NVIDIA H100).
-template <class Method>
-inline constexpr int most_components_written_out = rosenbrock_method<Method> ? 128 : 54;
 
 /// The results of a trial step: the slope at its start (and at its end, if the last stage computes it), the stages u,
 /// the new state, and the lanes whose matrix was singular, where everything else is invalid.
