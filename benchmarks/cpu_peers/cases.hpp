@@ -46,5 +46,7 @@ benchmark_case lorenz_rk4();
 benchmark_case duffing_cash_karp();
 benchmark_case keller_miksis_cash_karp();
 benchmark_case relief_valve();
+template <int states>
+benchmark_case lorenz96_case();
 
 }  // namespace cpu_peers

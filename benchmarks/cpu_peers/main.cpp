@@ -135,7 +135,8 @@ void run_contest(const benchmark_case& what, const measure_options& options) {
 bool run(const settings& chosen) {
     write_header(chosen);
     bool all_well = true;
-    for (const benchmark_case& what : {lorenz_rk4(), duffing_cash_karp(), keller_miksis_cash_karp(), relief_valve()}) {
+    for (const benchmark_case& what : {lorenz_rk4(), duffing_cash_karp(), keller_miksis_cash_karp(), relief_valve(),
+                                       lorenz96_case<32>(), lorenz96_case<128>()}) {
         if (!chosen.cases.empty() &&
             std::find(chosen.cases.begin(), chosen.cases.end(), what.name) == chosen.cases.end())
             continue;
@@ -171,7 +172,8 @@ int main(int argc, char** argv) {
     CLI::App app("Myriad's OpenMP backend compared with Boost.odeint, CVODE and hand-written code");
     app.add_option("--cases", chosen.cases, "Cases to run, all by default")
         ->delimiter(',')
-        ->check(CLI::IsMember({"lorenz_rk4", "duffing_cash_karp", "keller_miksis_cash_karp", "relief_valve"}));
+        ->check(CLI::IsMember({"lorenz_rk4", "duffing_cash_karp", "keller_miksis_cash_karp", "relief_valve",
+                               "lorenz96_32", "lorenz96_128"}));
     app.add_option("--implementations", chosen.measure.implementations, "Implementations to run, all by default")
         ->delimiter(',')
         ->check(CLI::IsMember({"odeint", "loop", "packs", "myriad"}));

@@ -25,10 +25,10 @@ void start(myriad::ensemble<duffing>& instances) {
     instances.integer_accessory(duffing::zeros) = 0;
 }
 
-problem<duffing> phases(std::int64_t count) {
+problem<duffing> phases(std::int64_t count, double tolerance) {
     return {{.phases = count,
-             .relative_tolerance = duffing_sweep::tolerance,
-             .absolute_tolerance = duffing_sweep::tolerance,
+             .relative_tolerance = tolerance,
+             .absolute_tolerance = tolerance,
              .step = 1e-2,
              .phase_step = myriad::phase_step::restart,
              .events = {{.direction = myriad::direction::falling, .tolerance = duffing_sweep::event_tolerance},
@@ -39,18 +39,20 @@ problem<duffing> phases(std::int64_t count) {
 
 /// Accessories that hooks set at the events of the fourth period (the first has none): the differences from the CPU
 /// with tolerances of 1e-13 and, for events, 1e-12.
+template <class Method>
 std::vector<double> errors_at_events(const problem<duffing>& what, std::int64_t size, const myriad::device& device) {
-    const auto four_periods = [&](const myriad::device& where, double tolerance, double event_tolerance) {
+    const auto four_periods = [&]<class By>(By, const myriad::device& where, double tolerance, double event_tolerance) {
         auto few = spread_instances(what, size);
         myriad::options options = what.options;
         options.phases = 4;
         options.relative_tolerance = options.absolute_tolerance = tolerance;
         for (auto& event : options.events) event.tolerance = event_tolerance;
-        myriad::solve<myriad::cash_karp>(where, few, options);
+        myriad::solve<By>(where, few, options);
         return few;
     };
-    const auto here = four_periods(device, duffing_sweep::tolerance, duffing_sweep::event_tolerance);
-    const auto there = four_periods(myriad::device::cpu(), 1e-13, 1e-12);
+    const auto here =
+        four_periods(Method{}, device, what.options.relative_tolerance[0], duffing_sweep::event_tolerance);
+    const auto there = four_periods(myriad::cash_karp{}, myriad::device::cpu(), 1e-13, 1e-12);
     std::vector<double> errors;
     for (std::int64_t k = 0; k < compared; ++k) {
         double worst =
@@ -63,10 +65,15 @@ std::vector<double> errors_at_events(const problem<duffing>& what, std::int64_t 
 }
 
 std::vector<measurement> measure(std::int64_t size, const measure_options& how) {
-    const auto what = phases(size >= 100'000 ? 64 : 1024);
-    return {measure_myriad<myriad::cash_karp>(what, size, how, [&](const auto&, measurement& m) {
-        set_errors(m, errors_at_events(what, size, how.device));
-    })};
+    const auto by = [&]<class Method>(Method, const char* name, double tolerance) {
+        const auto what = phases(size >= 100'000 ? 64 : 1024, tolerance);
+        measurement m = measure_myriad<Method>(what, size, how, [&](const auto&, measurement& of) {
+            set_errors(of, errors_at_events<Method>(what, size, how.device));
+        });
+        m.implementation = name;
+        return m;
+    };
+    return {by(myriad::cash_karp{}, "myriad", duffing_sweep::tolerance), by(myriad::verner_7{}, "verner_7 3e-9", 3e-9)};
 }
 
 }  // namespace

@@ -56,9 +56,11 @@ std::vector<measurement> measure_bubbles(std::int64_t size, const measure_option
     const auto truth = after_first_phases<myriad::dormand_prince_8>(at(1e-13), size, how.device);
     return {measure_method<myriad::cash_karp>("cash_karp 1e-10", at(1e-10), truth, size, how),
             measure_method<myriad::verner_7>("verner_7 1e-9", at(1e-9), truth, size, how),
+            measure_method<myriad::verner_7>("verner_7 3e-10", at(3e-10), truth, size, how),
             measure_method<myriad::verner_7>("verner_7 1e-10", at(1e-10), truth, size, how),
             measure_method<myriad::dormand_prince_8>("dormand_prince_8 1e-9", at(1e-9), truth, size, how),
             measure_method<myriad::dormand_prince_8>("dormand_prince_8 1e-10", at(1e-10), truth, size, how),
+            measure_method<dormand_prince_8_pi>("dormand_prince_8 pi 2e-9", at(2e-9), truth, size, how),
             measure_method<dormand_prince_8_pi>("dormand_prince_8 pi 1e-9", at(1e-9), truth, size, how),
             measure_method<dormand_prince_8_pi>("dormand_prince_8 pi 1e-10", at(1e-10), truth, size, how)};
 }

@@ -35,11 +35,11 @@ problem<Model, R> problem_of(double relative, double absolute) {
     return {{.relative_tolerance = relative, .absolute_tolerance = absolute}, &fill<Model, R>, &start<Model, R>};
 }
 
-template <class Model, class R>
+template <class Model, class R, class Method = myriad::dormand_prince_5>
 measurement measure_model(const char* name, std::int64_t size, const measure_options& how,
                           const myriad::ensemble<van_der_pol>& truth) {
-    measurement m = measure_myriad<myriad::dormand_prince_5>(
-        problem_of<Model, R>(1e-3, 1e-6), size, how, [&](const auto& found, measurement& of) {
+    measurement m =
+        measure_myriad<Method>(problem_of<Model, R>(1e-3, 1e-6), size, how, [&](const auto& found, measurement& of) {
             std::vector<double> errors;
             for (std::int64_t k = 0; k < compared; ++k) {
                 double worst = 0;
@@ -69,7 +69,9 @@ std::vector<measurement> measure(std::int64_t size, const measure_options& how) 
     return {measure_model<van_der_pol, double>("whole", size, how, truth),
             measure_model<van_der_pol_units, double>("units", size, how, truth),
             measure_model<van_der_pol, float>("whole float", size, how, truth),
-            measure_model<van_der_pol_units, float>("units float", size, how, truth)};
+            measure_model<van_der_pol_units, float>("units float", size, how, truth),
+            measure_model<van_der_pol, double, myriad::cash_karp>("whole cash_karp", size, how, truth),
+            measure_model<van_der_pol, float, myriad::cash_karp>("whole float cash_karp", size, how, truth)};
 }
 
 }  // namespace

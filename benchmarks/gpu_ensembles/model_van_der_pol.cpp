@@ -4,7 +4,7 @@
 
 #include "van_der_pol.hpp"
 
-MYRIAD_INSTANTIATE(gpu_ensembles::van_der_pol, myriad::dormand_prince_5)
+MYRIAD_INSTANTIATE(gpu_ensembles::van_der_pol, myriad::dormand_prince_5, myriad::cash_karp)
 MYRIAD_INSTANTIATE(gpu_ensembles::van_der_pol_units, myriad::dormand_prince_5)
-MYRIAD_INSTANTIATE_FLOAT(gpu_ensembles::van_der_pol, myriad::dormand_prince_5)
+MYRIAD_INSTANTIATE_FLOAT(gpu_ensembles::van_der_pol, myriad::dormand_prince_5, myriad::cash_karp)
 MYRIAD_INSTANTIATE_FLOAT(gpu_ensembles::van_der_pol_units, myriad::dormand_prince_5)

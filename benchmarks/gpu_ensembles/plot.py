@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Draws the measurements of gpu_ensembles: kernel time against the number of instances, with the limits and the times
-of other packages.
+of other packages; or, with --states, the time per state and instance against the number of states.
 
-Usage: plot.py CSV PNG
+Usage: plot.py [--states] CSV PNG
 
 Needs matplotlib (Debian, Ubuntu: python3-matplotlib). Exit status 2 if something is missing or wrong.
 """
@@ -21,6 +21,9 @@ MPGOS = {"lorenz_rk4": {8192: 0.120, 65536: 0.287, 768000: 2.893, 4194304: 15.47
          "relief_valve": {8192: 74.9, 30720: 77.1, 768000: 489}}
 PUBLISHED = {"GRADSOLVE": {"1e-3": 0.276, "1e-6": 0.657, "1e-8": 1.424},
              "DiffEqGPU": {"1e-3": 0.748, "1e-6": 1.922, "1e-8": 4.240}}
+# CuBIE 0.17 on an H200: Lorenz 96, 131 072 instances, Tsitouras' method, by number of states.
+CUBIE = {"double": {4: 0.288, 8: 0.492, 16: 0.908, 32: 3.35, 64: 26.9, 128: 89.6},
+         "single": {4: 0.111, 8: 0.095, 16: 0.151, 32: 0.294, 64: 1.56, 128: 22.8}}
 # 45 double-precision instructions per step, 64 of them per cycle on each of 132 multiprocessors at 1980 MHz.
 LIMIT_NS_PER_INSTANCE = 1000 * 45 / (64 * 132 * 1.98)
 
@@ -81,6 +84,37 @@ def by_method(name, title, chosen):
     return panel
 
 
+def draw_states(source, target):
+    """Lorenz 96: the time per state and instance, of whichever way of writing the model is faster at that size."""
+    times, gpu = read(source)
+    pyplot, _ = figures.import_libraries({})
+    figure, axis = pyplot.subplots(figsize=(9, 4.2))
+    cases = {int(name.rsplit("_", 1)[1]): case for name, case in times.items() if name.startswith("lorenz96_")}
+    instances = min(size for case in cases.values() for by_size in case.values() for size in by_size)
+
+    def fastest(ending):
+        found = {n: [case[way + ending][instances] for way in ("whole", "units") if way + ending in case]
+                 for n, case in cases.items()}
+        return {n: min(ways) for n, ways in found.items() if ways}
+
+    for i, (precision, ending) in enumerate({"double": " 1e-6", "single": " float 1e-4"}.items()):
+        for label, line, found in ((f"Myriad, {precision} precision", "-", fastest(ending)),
+                                   ("the same, errors judged as CuBIE does", "--",
+                                    fastest(" mean" + ending)),
+                                   (f"CuBIE 0.17, {precision}", ":", CUBIE[precision])):
+            draw(axis, {n: 1e6 * ms / n / instances for n, ms in found.items()}, label, figures.COLOURS[i], line)
+    axis.set_xticks(sorted(cases), [str(n) for n in sorted(cases)], minor=False)
+    axis.set_yticks(heights := (0.1, 0.2, 0.5, 1, 2, 5), [f"{ns:g}" for ns in heights])
+    axis.minorticks_off()
+    axis.set_xlabel("states")
+    axis.set_ylabel("ns per state and instance")
+    axis.set_title(f"Lorenz 96 to t = 1, {instances} instances, {gpu}", fontsize=10)
+    axis.legend(frameon=False, fontsize=8, loc="upper left", bbox_to_anchor=(1, 1))
+    axis.spines[["top", "right"]].set_visible(False)
+    figure.tight_layout()
+    figures.save(figure, target, 110)
+
+
 def draw_all(source, target):
     """The picture of a table."""
     times, gpu = read(source)
@@ -109,4 +143,7 @@ def draw_all(source, target):
 
 
 if __name__ == "__main__":
-    figures.exit_with(__doc__, draw_all)
+    by_states = "--states" in sys.argv
+    if by_states:
+        sys.argv.remove("--states")
+    figures.exit_with(__doc__, draw_states if by_states else draw_all)

@@ -27,7 +27,7 @@ struct large_unit {
 };
 }  // namespace
 
-TEST_CASE("a team has about 32 bytes of the state in each thread, and is a warp up to 64, else several") {
+TEST_CASE("a team has at most four states in each thread, is a warp up to 96 bytes in each, and else a block") {
     CHECK(chosen<4, double> == 1);
     CHECK(chosen<16, double> == 1);
     CHECK(chosen<17, double> == 8);
@@ -36,15 +36,18 @@ TEST_CASE("a team has about 32 bytes of the state in each thread, and is a warp 
     CHECK(chosen<64, double> == 16);
     CHECK(chosen<128, double> == 32);
     CHECK(chosen<256, double> == 32);
-    CHECK(chosen<257, double> == 128);
+    CHECK(chosen<384, double> == 32);
+    CHECK(chosen<385, double> == 128);
     CHECK(chosen<512, double> == 128);
     CHECK(chosen<4096, double> == 256);
     CHECK(chosen<24, float> == 1);
     CHECK(chosen<25, float> == 8);
-    CHECK(chosen<64, float> == 8);
-    CHECK(chosen<128, float> == 16);
+    CHECK(chosen<32, float> == 8);
+    CHECK(chosen<64, float> == 16);
+    CHECK(chosen<128, float> == 32);
     CHECK(chosen<256, float> == 32);
-    CHECK(chosen<512, float> == 32);
+    CHECK(chosen<768, float> == 32);
+    CHECK(chosen<769, float> == 128);
     CHECK(chosen<1024, float> == 128);
 }
 
