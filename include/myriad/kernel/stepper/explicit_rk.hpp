@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <new>
 
 #include "myriad/kernel/core/static_for.hpp"
 #include "myriad/kernel/core/vec.hpp"
@@ -183,7 +182,8 @@ MYRIAD_FUNCTION void copy_components(vec<S, n>& to, const vec<S, n>& from) {
         to = from;
     }
 }
-/// to = make(), which large packs write there at once instead of copying it.
+/// to = make(), which large packs write there at once instead of copying it, by the placement new that their headers
+/// declare.
 template <class S, int n, class Make>
 MYRIAD_FUNCTION void put_result(vec<S, n>& to, Make&& make) {
     if constexpr (is_large_in_packs<S, n>) {
