@@ -40,8 +40,8 @@ struct lorenz96_unit {
 template <int n>
 using lorenz96_units = myriad::coupled_units<lorenz96_unit, n>;
 
-/// Errors judged as CuBIE, DifferentialEquations.jl and SUNDIALS do: their root mean square, over the sum of absolute
-/// and relative tolerance. At equal tolerances it allows larger errors than the default.
-using tsitouras_5_mean = myriad::controlled<myriad::tsitouras_5, myriad::rms_norm, myriad::mixed_scale>;
+/// Errors judged as CuBIE, DifferentialEquations.jl and SUNDIALS do: the root mean square of the errors, each over atol
+/// + rtol |y|. At equal tolerances it allows larger errors than the default.
+using tsitouras_5_rms = myriad::controlled<myriad::tsitouras_5, myriad::rms_norm, myriad::mixed_scale>;
 
 }  // namespace gpu_ensembles

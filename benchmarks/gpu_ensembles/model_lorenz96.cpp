@@ -4,10 +4,10 @@
 
 #include "lorenz96.hpp"
 
-MYRIAD_INSTANTIATE(gpu_ensembles::lorenz96<4>, myriad::tsitouras_5, gpu_ensembles::tsitouras_5_mean)
-MYRIAD_INSTANTIATE(gpu_ensembles::lorenz96<8>, myriad::tsitouras_5, gpu_ensembles::tsitouras_5_mean)
-MYRIAD_INSTANTIATE(gpu_ensembles::lorenz96<16>, myriad::tsitouras_5, gpu_ensembles::tsitouras_5_mean)
-MYRIAD_INSTANTIATE(gpu_ensembles::lorenz96<32>, myriad::tsitouras_5, gpu_ensembles::tsitouras_5_mean)
+MYRIAD_INSTANTIATE(gpu_ensembles::lorenz96<4>, myriad::tsitouras_5, gpu_ensembles::tsitouras_5_rms)
+MYRIAD_INSTANTIATE(gpu_ensembles::lorenz96<8>, myriad::tsitouras_5, gpu_ensembles::tsitouras_5_rms)
+MYRIAD_INSTANTIATE(gpu_ensembles::lorenz96<16>, myriad::tsitouras_5, gpu_ensembles::tsitouras_5_rms)
+MYRIAD_INSTANTIATE(gpu_ensembles::lorenz96<32>, myriad::tsitouras_5, gpu_ensembles::tsitouras_5_rms)
 MYRIAD_INSTANTIATE(gpu_ensembles::lorenz96_units<16>, myriad::tsitouras_5)
 MYRIAD_INSTANTIATE(gpu_ensembles::lorenz96_units<32>, myriad::tsitouras_5)
 MYRIAD_INSTANTIATE(gpu_ensembles::lorenz96_units<64>, myriad::tsitouras_5)

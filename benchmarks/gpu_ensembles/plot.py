@@ -100,7 +100,7 @@ def draw_states(source, target):
     for i, (precision, ending) in enumerate({"double": " 1e-6", "single": " float 1e-4"}.items()):
         for label, line, found in ((f"Myriad, {precision} precision", "-", fastest(ending)),
                                    ("the same, errors judged as CuBIE does", "--",
-                                    fastest(" mean" + ending)),
+                                    fastest(" rms" + ending)),
                                    (f"CuBIE 0.17, {precision}", ":", CUBIE[precision])):
             draw(axis, {n: 1e6 * ms / n / instances for n, ms in found.items()}, label, figures.COLOURS[i], line)
     axis.set_xticks(sorted(cases), [str(n) for n in sorted(cases)], minor=False)

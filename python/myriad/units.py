@@ -38,8 +38,9 @@ def units(count: int, *, threads_per_instance: int | None = None) -> Units:
     integrate an instance together, a power of two up to 256; without a number as many as suit the number of states."""
     if isinstance(count, bool) or not isinstance(count, (int, np.integer)) or count < 1:
         raise Error(f"there are {count!r} units{at(users_line())}: give their number, as in myriad.units(14)")
-    if threads_per_instance is not None and (isinstance(threads_per_instance, bool)
-                                             or threads_per_instance not in (1, 2, 4, 8, 16, 32, 64, 128, 256)):
+    if threads_per_instance is not None and not (
+            isinstance(threads_per_instance, (int, np.integer)) and not isinstance(threads_per_instance, bool)
+            and threads_per_instance in (1, 2, 4, 8, 16, 32, 64, 128, 256)):
         raise Error(f"threads_per_instance is {threads_per_instance!r}{at(users_line())}: give a power of two "
                     "from 1 to 256, or leave it out")
     return Units(int(count), threads_per_instance)

@@ -82,6 +82,8 @@ def test_hooks_events_and_summaries_of_units_are_written_out():
     (lambda u: u.state("x y"), "'x y' is no name for a state"),
     (lambda u: my.units(0), "there are 0 units"),
     (lambda u: my.units(3, threads_per_instance=3), "threads_per_instance is 3"),
+    (lambda u: my.units(3, threads_per_instance=True), "threads_per_instance is True"),
+    (lambda u: my.units(3, threads_per_instance=64.0), "threads_per_instance is 64.0"),
     (lambda u: my.model({u.state("x"): [1, 2]}), "equations has values of shape (2,) for x_0 to x_2"),
     (lambda u: my.model({u.state("x"): 1, my.state("x_1"): 2}), "x_1 stands in equations twice"),
     (lambda u: u.state("x")[3], "index 3 is out of bounds"),

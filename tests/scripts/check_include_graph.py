@@ -21,7 +21,7 @@ KERNEL_LIBRARY = {
 # The headers with code of their own for nvcc. All others are the same for both compilers.
 CUDA_CODE = {
     "myriad/kernel/core/macros.hpp",            # execution spaces, unrolling, barriers
-    "myriad/kernel/core/team.hpp",              # what the threads of a warp do together
+    "myriad/kernel/core/team.hpp",              # what the threads of a team do together
     "myriad/kernel/core/vec.hpp",               # indices out of range, which nvcc's host compiler refuses
     "myriad/kernel/model/unit_views.hpp",       # numbers of units, likewise
     "myriad/kernel/scalar/math.hpp",            # functions of one number

@@ -19,7 +19,7 @@ outcome run(const sweep& work, T allowed) {
         const T F = T(parameter_of(0));
         state x;
         for (std::size_t c = 0; c < x.size(); ++c) x[c] = T(y[c]);
-        const auto system = [F](const state& s, state& ds, T) { slopes(n, F, s, ds); };
+        const auto system = [F](const state& s, state& ds, T) { slopes(F, s, ds); };
         accepted = static_cast<std::int64_t>(odeint::integrate_adaptive(
             odeint::make_controlled<Stepper>(allowed, allowed), system, x, T(0), T(work.phases), T(1e-3)));
         for (std::size_t c = 0; c < x.size(); ++c) y[c] = static_cast<double>(x[c]);

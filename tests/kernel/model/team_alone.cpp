@@ -11,6 +11,7 @@ using ring_alone = ring<1>;
 using hoppers_alone = hoppers<1>;
 using drifters_alone = drifters<1>;
 using watched_alone = watched_ring<1>;
+using envious_alone = envious_ring<1>;
 using metered_alone = metered_line<1>;
 using adapting_alone = adapting_cells<1>;
 }  // namespace teams
@@ -22,5 +23,6 @@ MYRIAD_INSTANTIATE(teams::hoppers_alone, myriad::cash_karp, teams::sampled_8)
 MYRIAD_INSTANTIATE(teams::drifters_alone, myriad::dormand_prince_5, myriad::runge_kutta_4)
 MYRIAD_INSTANTIATE(teams::ring_alone, teams::careful_start)
 MYRIAD_INSTANTIATE(teams::watched_alone, myriad::cash_karp, myriad::dormand_prince_8)
+MYRIAD_INSTANTIATE(teams::envious_alone, myriad::cash_karp)
 MYRIAD_INSTANTIATE(teams::metered_alone, myriad::runge_kutta_4, teams::sampled)
 MYRIAD_INSTANTIATE(teams::adapting_alone, myriad::cash_karp, myriad::dormand_prince_5)

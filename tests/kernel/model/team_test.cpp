@@ -114,6 +114,25 @@ TEST_CASE("a team of threads takes fixed steps as one thread does") {
     compare<myriad::runge_kutta_4, places<1>, places<8>>({.step = 0.01});
 }
 
+TEST_CASE("phases of fixed steps end in a team where they do in one thread, at their end, by a failure or by a limit") {
+    myriad::options phases{.phases = 3, .step = 0.01};
+    phases.phase_length = 0.4;
+    compare<myriad::runge_kutta_4, places<1>, places<8>>(phases);
+    for (const auto order : {teams::order::first_thread_first, teams::order::last_thread_first}) {
+        teams::order_of_threads = order;
+        auto alone = ensemble_of<places<1>>();
+        auto together = ensemble_of<places<8>>();
+        alone.parameter(0)[2] = together.parameter(0)[2] = 1e308;  // overflows after some steps
+        myriad::options limited{.step = 0.3};
+        limited.max_steps = 4;
+        integrate<myriad::runge_kutta_4>(alone, limited);
+        integrate<myriad::runge_kutta_4>(together, limited);
+        CHECK(together.status(0) == myriad::status::max_steps);
+        CHECK(together.status(2) == myriad::status::not_finite);
+        compare(alone, together);
+    }
+}
+
 TEST_CASE("a team of threads publishes and sums couplings as one thread does") {
     compare<myriad::cash_karp, phases<1>, phases<2>>(tolerances(38));
     compare<myriad::cash_karp, phases<1>, phases<16>>(tolerances(38));
@@ -174,6 +193,10 @@ TEST_CASE("a team of threads finds extrema and integrals along the solution as o
     options = tolerances(18);
     options.samples = {.capacity = 40, .evenly = 17};
     compare<teams::sampled, metered_line<1>, metered_line<16>>(options, {0, 17});
+}
+
+TEST_CASE("what a unit observes of the others' summaries is the same in a team as in one thread") {
+    compare<myriad::cash_karp, teams::envious_ring<1>, teams::envious_ring<8>>(tolerances(18));
 }
 
 TEST_CASE("a team of threads sees accessories and parameters that hooks and summaries write as one thread does") {

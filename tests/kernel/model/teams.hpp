@@ -133,6 +133,26 @@ struct watched {
         if (unit == 0) lane.accessory[phases_seen] = lane.phase + 1 + lane.unit_accessory[widest];
     }
 };
+/// What is observed depends on the next unit's maximum and integral so far.
+struct envious {
+    enum unit_state { x, v, n_unit_state };
+    enum parameter { spring, n_parameter };
+    enum unit_observed { envy, n_unit_observed };
+    enum unit_accessory { most, total, n_unit_accessory };
+    static constexpr myriad::summary summaries[] = {{envy, myriad::over_phase::maximum, most},
+                                                    {envy, myriad::over_phase::integral, total}};
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_unit_state> rhs(int unit, auto, const auto& y, const auto& p) {
+        return {y[v], R(0.1) * y.of((unit + 1) % y.units)[x] - p[spring] * y[x]};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_unit_observed> observe(int unit, auto, const auto& y, const auto& p) {
+        const auto next = p.of((unit + 1) % y.units);
+        return myriad::vec<R, n_unit_observed>{y[x] + R(0.25) * next.unit_accessory[most] +
+                                               R(0.1) * next.unit_accessory[total]};
+    }
+};
 /// Charges that flow to the next unit, with an integral and no extrema: steps need no slopes of what is observed.
 struct metered {
     static constexpr bool accessories_are_outputs = true;
@@ -228,6 +248,8 @@ template <int threads>
 using drifters = myriad::coupled_units<of_team<drifter, threads>, 21>;
 template <int threads>
 using watched_ring = myriad::coupled_units<of_team<watched, threads>, 11>;
+template <int threads>
+using envious_ring = myriad::coupled_units<of_team<envious, threads>, 9>;
 template <int threads>
 using metered_line = myriad::coupled_units<of_team<metered, threads>, 18>;
 template <int threads>

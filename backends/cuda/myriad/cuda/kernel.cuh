@@ -157,12 +157,12 @@ constexpr int max_block_size() {
     }
 }
 
-/// Whether nvcc should think of the latency of a single thread first, not of how many threads fit. Measured, NVIDIA
-/// H200, double precision, ms with and without: 8192 and 307 200 bubbles by dormand_prince_8 with PI control 184 and
-/// 232, 777 and 778; 524 288 instances of Lorenz by tsitouras_5 at 1e-8 0.625 and 0.645. Where it costs instead: in
-/// kernels with events, whose rare code is large (768 000 valves 304 and 288), teams (Lorenz 96 with 32 states 2.43
-/// and 2.26), fixed steps (768 000 instances of Lorenz by runge_kutta_4 2.24 and 2.23) and single precision (Lorenz 96
-/// with 16 states 0.182 and 0.173).
+/// Whether nvcc is to shorten the waits of each thread first, with more registers, instead of letting more threads run.
+/// Measured with and without, NVIDIA H200, ms. It gains in double precision: dormand_prince_8 with PI control, 8192
+/// bubbles 184 and 232, 307 200 bubbles 777 and 778; tsitouras_5 at 1e-8, 524 288 instances of Lorenz, 0.625 and 0.645.
+/// It costs time in kernels with events, whose rare code is large (768 000 valves 304 and 288), in teams (Lorenz 96
+/// with 32 states 2.43 and 2.26), with fixed steps (768 000 instances of Lorenz by runge_kutta_4 2.24 and 2.23), and in
+/// single precision (Lorenz 96 with 16 states 0.182 and 0.173).
 template <class Model, class Method, class R>
 constexpr bool prefers_latency = sizeof(R) == sizeof(double) && is_adaptive<Method>&& team_size<Model> == 1 &&
                                  !has_events<Model> && !has_stops<Model>;

@@ -131,17 +131,19 @@ private:
         facts_.registers = attributes.numRegs;
         facts_.local_bytes = static_cast<std::int64_t>(attributes.localSizeBytes);
         const int most = attributes.maxThreadsPerBlock;
+        require(wanted == 0 || !team_is_block() || wanted == traits().team, "block_size is ", wanted,
+                ", but a block of this kernel is a team of ", traits().team, " threads", host::cure,
+                "leave block_size out");
         require(wanted <= most, "block_size is ", wanted, ", but a block of this kernel has at most ", most,
                 " threads (", attributes.numRegs, " registers each)", host::cure, "give a smaller block_size",
                 wanted <= 1024 && traits().max_block_size < wanted
                     ? ", or let the model declare a larger `static constexpr int max_block_size`"
                     : "");
-        require(wanted == 0 || !team_is_block() || wanted == traits().team, "block_size is ", wanted,
-                ", but a block of this kernel is a team of ", traits().team, " threads", host::cure,
-                "leave block_size out");
         // The smallest block size among those that keep most threads resident, as the fewer threads end together, the
         // sooner others start. Where shared memory has no room for a warp, blocks are parts of one.
-        int first = wanted > 0 ? wanted : std::max(team_is_block() ? traits().team : 0, std::min(32, most / 32 * 32));
+        int first = std::min(32, most / 32 * 32);
+        if (team_is_block()) first = traits().team;
+        if (wanted > 0) first = wanted;
         consider_blocks(first, wanted > 0 ? wanted : most);
         if (traits().team > 1 && wanted == 0) consider_blocks(most / 32 * 32, most);
         while (facts_.block_size == 0 && wanted == 0 && keeps_steps_in_shared_memory() && first > smallest_block()) {

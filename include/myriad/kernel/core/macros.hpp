@@ -33,7 +33,8 @@
 #define MYRIAD_RECONVERGE __syncwarp()
 /// Unrolls the following loop; in device code only up to 64 iterations, so that larger states stay loops.
 #define MYRIAD_UNROLL _Pragma("unroll 64")
-/// The same up to other numbers of iterations, literal numbers, in device code and on the CPU.
+/// The same with limits of its own for device code and for the CPU, which are literals, as a pragma sees only their
+/// text.
 #define MYRIAD_UNROLL_UP_TO(on_gpu, on_cpu) MYRIAD_PRAGMA(unroll(on_gpu))
 #define MYRIAD_PRAGMA(text) _Pragma(#text)
 /// In device code, unrolls the following long loop by a constant expression: over steps, in which constants are

@@ -72,9 +72,10 @@ constexpr bool is_size_of_team(int threads) {
 template <int threads>
 struct thread_team {
     static_assert(is_size_of_team(threads), "the threads of a team are a power of two, at most 256");
-    /// Whether its threads are those of a block, and the bytes at the begin of the block's shared memory by which they
-    /// exchange numbers, one for each warp.
+    /// Whether the team is a block.
     static constexpr bool is_block = threads > 32;
+    /// Bytes at the beginning of a block's shared memory through which such a team exchanges numbers, one for each
+    /// warp.
     static constexpr int exchange_bytes = is_block ? threads / 32 * static_cast<int>(sizeof(std::uint64_t)) : 0;
 
     /// The number of this thread within its team.
@@ -207,34 +208,34 @@ private:
         if constexpr (is_block) {
             constexpr int warps = threads / 32;
             U* const of_warps = static_cast<U*>(memory_of_block());
-            own = thread_team<32>::reduced(own);
+            own = thread_team<32>::largest_in_warp(own);
             if (number_of_thread() % 32 == 0) of_warps[number_of_thread() / 32] = own;
             __syncthreads();
-            own = thread_team<warps>::reduced(of_warps[number_of_thread() % warps]);
+            own = thread_team<warps>::largest_in_warp(of_warps[number_of_thread() % warps]);
             __syncthreads();  // all have read them
             return own;
         } else {
-            return reduced(own);
+            return largest_in_warp(own);
         }
 #else
-        return reduced(own);
+        return largest_in_warp(own);
 #endif
     }
     /// The same in a warp, or in a simulated team.
     template <class U>
-    static MYRIAD_FUNCTION U reduced(U own) {
+    static MYRIAD_FUNCTION U largest_in_warp(U own) {
 #if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800
         if constexpr (sizeof(U) == sizeof(unsigned)) {
             return __reduce_max_sync(mask(), own);
         } else {
-            return reduced_in_pairs(own);
+            return largest_by_pairs(own);
         }
 #else
-        return reduced_in_pairs(own);
+        return largest_by_pairs(own);
 #endif
     }
     template <class U>
-    static MYRIAD_FUNCTION U reduced_in_pairs(U own) {
+    static MYRIAD_FUNCTION U largest_by_pairs(U own) {
         MYRIAD_UNROLL
         for (int distance = threads / 2; distance > 0; distance /= 2) {
             const U other = of_pair(own, distance);

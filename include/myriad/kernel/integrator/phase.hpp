@@ -271,6 +271,7 @@ private:
         const std::int64_t index = s.instance[i];
         if (args.accepted != nullptr && team_for<Model>::leads()) count_work(i);
         set_lane(s.data.t, i, stepping_type{args, s}.time(i));
+        team_for<Model>::synchronise();  // all have read time and number of the phase from the ensemble
         if constexpr (m > 0) events.store(i);
         args.t[index] = get_lane(s.data.t, i);
         if constexpr (has_finalise<Model>) {

@@ -30,15 +30,23 @@ constexpr bool runs_in_teams() {
 template <class R>
 inline constexpr int most_states_of_one_thread = sizeof(R) == sizeof(double) ? 16 : 24;
 /// Most states that a thread of a team takes while the team is smaller than a warp, and the smallest team. Lorenz 96 by
-/// tsitouras_5, 131 072 instances, NVIDIA H200, ms for 8, 16 and 32 threads: in double precision 32 states 2.27, 2.58
-/// and -, 64 states 4.85, 4.47 and 4.83, 128 states -, 9.25 and 8.72; in single precision 0.69, 0.93 and -, 1.38, 1.26
-/// and 1.66, and -, 2.55 and 2.39.
+/// tsitouras_5, 131 072 instances, NVIDIA H200, ms in double and in single precision:
+///
+///     states   8 threads    16           32
+///     32       2.27, 0.69   2.58, 0.93
+///     64       4.85, 1.38   4.47, 1.26   4.83, 1.66
+///     128                   9.25, 2.55   8.72, 2.39
 inline constexpr int most_states_of_team_thread = 4, smallest_chosen_team = 8;
-/// Up to so many bytes in each of its threads, a warp is faster than several, which wait for each other at barriers of
-/// the block. The same, in double precision, with 32, 64 and 128 threads: 256 states 18.0, 23.4 and 24.8, 384 states
-/// 28.0, 33.6 and 34.0. Beyond, a warp has not enough registers, and a block has about 32 bytes in each thread. 32 768
-/// instances, with 32, 64, 128 and 256 threads: 512 states 13.8, 12.3, 10.9 and 12.4, 1024 states -, 35.0, 23.7 and
-/// 23.3, in single precision -, 6.9, 6.1 and 6.9.
+/// A warp with up to so many bytes of the state in each thread is faster than several warps, which wait for each other
+/// at barriers of the block. Beyond, it has not enough registers, and a block has about 32 bytes in each thread. The
+/// same in double precision, except for the last line, in single:
+///
+///     states   instances   32 threads   64     128    256
+///     256      131 072     18.0         23.4   24.8
+///     384      131 072     28.0         33.6   34.0
+///     512      32 768      13.8         12.3   10.9   12.4
+///     1024     32 768                   35.0   23.7   23.3
+///     1024     32 768                   6.9    6.1    6.9
 inline constexpr int most_bytes_of_warp_thread = 96, bytes_of_block_thread = 32;
 
 /// The number of threads that integrate an instance: as units declare it, `static constexpr int threads_per_instance =

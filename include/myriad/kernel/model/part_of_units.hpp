@@ -157,8 +157,8 @@ struct part_of_units : part_summaries<Whole, (Whole::n_unit + threads - 1) / thr
 
     template <class R>
     static constexpr int stride = team_stride<Whole, threads, R>();
-    /// Of shared memory: for what large teams exchange and the tolerances of all states, once in a block, and for each
-    /// thread.
+    /// Bytes of shared memory: once in a block, for what large teams exchange and for the tolerances of all states; and
+    /// for each thread.
     template <class R>
     static constexpr int bytes_of_block = together::exchange_bytes +
                                           2 * detail::n_state<Whole>* static_cast<int>(sizeof(R));

@@ -51,6 +51,7 @@ struct summariser {
         const lane_data<Model, R> one = detail::extract_lane(s.data, i);
         const inputs<Model, R>& p = one;
         const vec<R, m> q = Model::template observe<R>(one.t, one.y, p);
+        wait_for_readers();
         static_for<0, n_summary<Model>>([&](auto r) MYRIAD_LAMBDA {
             constexpr unmarked_summary what = summary_at<Model, decltype(r)::value>;
             constexpr bool time = what.kind == over_phase::time_of_maximum || what.kind == over_phase::time_of_minimum;
@@ -75,6 +76,7 @@ struct summariser {
         const slopes first = at_end<0>(step, step.data.t, step.data.y), last = at_end<1>(step, t1, trial.y);
         if constexpr (integrates) know_interpolant(step, accepted);
 
+        wait_for_readers();
         mask search = mask(false);
         static_for<0, m>([&](auto j) MYRIAD_LAMBDA {
             constexpr int q = decltype(j)::value;
@@ -110,6 +112,11 @@ struct summariser {
     }
 
 private:
+    /// Waits until all threads of a team have read the accessories, of which this thread is about to write some.
+    static MYRIAD_FUNCTION void wait_for_readers() {
+        if constexpr (sees_summaries<Model>) team_for<Model>::synchronise();
+    }
+
     template <int q, over_phase kind>
     static constexpr bool extreme = summarises<Model>(q, kind);
 
@@ -337,6 +344,7 @@ private:
             return slope;
         });
         const slopes there = look_at(step, theta);
+        wait_for_readers();
         if (team_for<Model>::number_of_thread() == thread)
             consider<q>(wanted, there, fma(theta, step.data.h, step.data.t));
     }
@@ -359,6 +367,7 @@ private:
             MYRIAD_UNROLL
             for (int q = 0; q < m; ++q) sum[q] = fma(weight, inside[q], sum[q]);
         }
+        wait_for_readers();
         static_for<0, m>([&](auto j) MYRIAD_LAMBDA {
             constexpr int q = decltype(j)::value;
             if constexpr (extreme<q, over_phase::integral>) {

@@ -237,8 +237,8 @@ MYRIAD_UNARY(log1p)
 /// 1 / x, on GPUs without the slow path of a division: within 1 ulp for normal x and result; not finite for zero. For
 /// infinity it is NaN in double precision on GPUs, and zero elsewhere.
 MYRIAD_UNARY(reciprocal)
-/// 1 / sqrt(x), on GPUs without a branch or a division: within 1.5 ulps, in single precision 2, for normal x. For zero
-/// and infinity it is NaN in double precision on GPUs, and infinity and zero elsewhere.
+/// 1 / sqrt(x), on GPUs without a branch or a division: within 1.5 ulps, in single precision 2, for positive normal x.
+/// For zero and infinity it is NaN in double precision on GPUs, and infinity and zero elsewhere.
 MYRIAD_UNARY(rsqrt)
 #undef MYRIAD_UNARY
 

@@ -182,8 +182,8 @@ MYRIAD_FUNCTION void copy_components(vec<S, n>& to, const vec<S, n>& from) {
         to = from;
     }
 }
-/// to = make(), which large packs write there at once instead of copying it, by the placement new that their headers
-/// declare.
+/// to = make(); in large packs the result is constructed in place, without a copy. xsimd's headers declare placement
+/// new, so that code for GPUs, which has no packs, needs no <new>.
 template <class S, int n, class Make>
 MYRIAD_FUNCTION void put_result(vec<S, n>& to, Make&& make) {
     if constexpr (is_large_in_packs<S, n>) {
