@@ -183,7 +183,7 @@ MYRIAD_FUNCTION void copy_components(vec<S, n>& to, const vec<S, n>& from) {
     }
 }
 /// to = make(); in large packs the result is constructed in place, without a copy. xsimd's headers declare placement
-/// new, so that code for GPUs, which has no packs, needs no <new>.
+/// new, so that code for GPUs, which has no packs, needs no header for it.
 template <class S, int n, class Make>
 MYRIAD_FUNCTION void put_result(vec<S, n>& to, Make&& make) {
     if constexpr (is_large_in_packs<S, n>) {
