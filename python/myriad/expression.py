@@ -565,7 +565,7 @@ log = _function("log", "Natural logarithm; NaN of negative numbers, minus infini
 log2 = _function("log2", "Logarithm to base 2.")
 log10 = _function("log10", "Logarithm to base 10.")
 reciprocal = _function("reciprocal", "1 / x without a division, for normal x with a normal result.")
-rsqrt = _function("rsqrt", "1 / sqrt(x) without a division, for normal x.")
+rsqrt = _function("rsqrt", "1 / sqrt(x) without a division, for positive normal x.")
 
 
 def _function_of_two(name: str, description: str) -> Callable[[Operand, Operand], Expression]:

@@ -162,7 +162,7 @@ constexpr int max_block_size() {
 /// bubbles 184 and 232, 307 200 bubbles 777 and 778; tsitouras_5 at 1e-8, 524 288 instances of Lorenz, 0.625 and 0.645.
 /// It costs time in kernels with events, whose rare code is large (768 000 valves 304 and 288), in teams (Lorenz 96
 /// with 32 states 2.43 and 2.26), with fixed steps (768 000 instances of Lorenz by runge_kutta_4 2.24 and 2.23), and in
-/// single precision (Lorenz 96 with 16 states 0.182 and 0.173).
+/// single precision (Lorenz 96 with 16 states 0.182 and 0.173). Stop times were not measured.
 template <class Model, class Method, class R>
 constexpr bool prefers_latency = sizeof(R) == sizeof(double) && is_adaptive<Method>&& team_size<Model> == 1 &&
                                  !has_events<Model> && !has_stops<Model>;

@@ -6,6 +6,8 @@
 #include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/core/ieee.hpp"
 
+/// A pragma whose text contains a macro's argument.
+#define MYRIAD_PRAGMA(text) _Pragma(#text)
 #if defined(__CUDACC__)
 // A function without MYRIAD_FUNCTION is host code: nvcc would only warn if a kernel calls it, and leave the call out.
 #pragma nv_diag_error 20011, 20013, 20014, 20015
@@ -36,7 +38,6 @@
 /// The same with limits of its own for device code and for the CPU, which are literals, as a pragma sees only their
 /// text.
 #define MYRIAD_UNROLL_UP_TO(on_gpu, on_cpu) MYRIAD_PRAGMA(unroll(on_gpu))
-#define MYRIAD_PRAGMA(text) _Pragma(#text)
 /// In device code, unrolls the following long loop by a constant expression: over steps, in which constants are
 /// reloaded in every iteration, or over values in memory, whose loads are then under way together.
 #define MYRIAD_UNROLL_BY(count) MYRIAD_PRAGMA(unroll(count))
@@ -102,7 +103,6 @@
 #define MYRIAD_UNROLL_UP_TO(on_gpu, on_cpu) MYRIAD_PRAGMA(GCC unroll on_cpu)
 #define MYRIAD_UNROLL_ON_GPU _Pragma("GCC unroll 1")
 #endif
-#define MYRIAD_PRAGMA(text) _Pragma(#text)
 #define MYRIAD_BACKEND_HEADER "myriad/openmp/run.hpp"
 #if defined(__AVX512F__)
 #define MYRIAD_TARGET openmp_avx512
