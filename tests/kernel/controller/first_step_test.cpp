@@ -95,17 +95,18 @@ TEST_CASE("the default first step follows from slope, tolerance and domain") {
     CHECK(first_step(lines<double>(0, 10, 4, 20)) == Approx(5 * usual));
     CHECK(first_step(lines<double>(0, 10), {.relative_tolerance = 1e-13, .absolute_tolerance = 1e-13}) ==
           Approx(2 * std::pow(1e-13, 0.2)));
-    CHECK(first_step(lines<double>(0, 10, 1e-300)) == Approx(1));  // a tenth of the domain
+    CHECK(first_step(lines<double>(0, 10, 1e-3)) == Approx(1));  // a tenth of the domain
     CHECK(first_step(lines<double>(0, 10, 1e300)) < 1e-300);
-    CHECK(first_step(lines<double>(0, 10, 0)) == Approx(1e-2));  // which says nothing
-    CHECK(first_step(lines<double>(0, 1e-9)) == Approx(1e-10));
+    for (const double rest : {0.0, 1e-300, 1e-9}) CHECK(first_step(lines<double>(0, 10, rest)) == Approx(1e-8));
+    CHECK(first_step(lines<double>(0, 1e-6)) == Approx(1e-7));
+    CHECK(first_step(lines<double>(0, 1e-9)) == Approx(1e-18).margin(0));  // which changes nothing
     CHECK(first_step(lines<double>(0, 10), {.maximum_step = 1e-3}) == Approx(1e-3));
     CHECK(first_step(lines<double>(0, 10, 1e9), {.minimum_step = 0.25}) == Approx(0.25));
     CHECK(first_step<myriad::rosenbrock_23>(lines<double>(0, 10)) > 0);
 }
 
 TEST_CASE("a state of zero without an absolute tolerance does not make the first step vanish") {
-    CHECK(first_step(lines<double>(0, 10), {.absolute_tolerance = 0}) == Approx(1e-2));
+    CHECK(first_step(lines<double>(0, 10), {.absolute_tolerance = 0}) == Approx(1e-8));
     auto e = lines<double>(0, 10);
     const auto report = myriad::solve<cash_karp>(test_device(), e, {.absolute_tolerance = 0});
     CHECK(report.count(status::success) == 5);

@@ -29,15 +29,9 @@ struct thrown {
 using flags = myriad::detail::mask_set<bool, thrown::n_event>;
 using values = myriad::vec<double, thrown::n_event>;
 
-/// Below which values have no sign, as the loop hands it over.
-struct floors {
-    values each;
-    double floor(int j) const { return each[j]; }
-};
-
 struct step : myriad::inputs<thrown, double>, myriad::detail::step_ends<thrown, double> {
     static constexpr double closest = 1e-9;
-    values floor, tolerance;  // of all functions the same
+    values tolerance;  // of all functions the same
 
     step(double from, double to, double alarm_at = 10) : step_ends(static_cast<const inputs&>(*this)) {
         parameter[thrown::alarm] = alarm_at;
@@ -46,14 +40,14 @@ struct step : myriad::inputs<thrown, double>, myriad::detail::step_ends<thrown, 
         slope = {1 - from}, slope1 = {1 - to};
         g = myriad::detail::evaluate_events<thrown>(t, y, p);
         g1 = myriad::detail::evaluate_events<thrown>(t1, y1, p);
-        for (int j = 0; j < thrown::n_event; ++j) floor[j] = 0, tolerance[j] = closest;
+        for (int j = 0; j < thrown::n_event; ++j) tolerance[j] = closest;
     }
     /// The crossings between the signs at both ends, except those excluded.
     auto first(values side) const {
         flags crossed;
         crossed.clear();
         for (int j = 0; j < thrown::n_event; ++j) crossed.set(j, side[j] * g1[j] < 0);
-        return earliest_crossing(*this, side, crossed, floors{floor}, tolerance);
+        return earliest_crossing(*this, side, crossed, flags::all_in(true), tolerance);
     }
 };
 

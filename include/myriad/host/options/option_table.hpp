@@ -235,8 +235,9 @@ struct option_table<options> {
         option_entry{"events", &o::events, results,
                      "how events are detected: one entry for each; none: defaults for all"},
         option_entry{"sub_samples", &o::sub_samples, results, "", from_to(1, 1e4),
-                     "points per step at which event functions are evaluated"},
-        option_entry{"accumulation_limit", &o::accumulation_limit, results, "", from_to(1, 1e9),
+                     "points per step at which event functions are evaluated, and with two or more also where they "
+                     "turn: what crosses zero and comes back within a step is found"},
+        option_entry{"accumulation_limit", &o::accumulation_limit, results, "", from_to(1, 65535),
                      "repeated actions of one event without leaving its surface, after which the instance ends as "
                      "`event_accumulation`"},
         option_entry{"record", &o::record, results, "what to keep at the end of each phase"},

@@ -144,7 +144,8 @@ struct options {
     myriad::phase_step phase_step = myriad::phase_step::restart;
 
     std::vector<event_options> events = {};  ///< one for each event, in the model's order; empty: defaults for all
-    std::int64_t sub_samples = 1;  ///< points per step at which event functions are evaluated (the last is the end)
+    std::int64_t sub_samples = 1;  ///< points per step at which event functions are evaluated (the last is the end);
+                                   ///< with two or more also where they turn
     std::int64_t accumulation_limit = 50;  ///< actions of one event, without its function leaving the surface in
                                            ///< between, or of one kind of stop at one time, that end the instance
                                            ///< as `event_accumulation`

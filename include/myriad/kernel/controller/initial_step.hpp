@@ -10,10 +10,19 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
+/// A first step where nothing is known of how fast the solution will change: a small part of the domain, or of
+/// `args.step` in a domain without an end. It grows by what the steps see; a longer one might have all its stages where
+/// the slope is zero, as at whole periods.
+template <class Model, class R, class S>
+MYRIAD_FUNCTION S cautious_step(const kernel_arguments<Model, R>& args, const S& domain) {
+    constexpr R part = R(1e-9);
+    return S(part) * select(domain <= S(largest_of<R>), domain, S(args.step));
+}
+
 /// By the slope alone: no component changes by more than `args.first_change` of its size, which is at least atol /
-/// rtol. Shampine and Reichelt, SIAM J. Sci. Comput. 18 (1997) 1, and their code ode45. At most a tenth of the domain;
-/// in one without an end, and where the slope says nothing, at most `args.step`. A component that is zero and has no
-/// absolute tolerance has no size.
+/// rtol. Shampine and Reichelt, SIAM J. Sci. Comput. 18 (1997) 1, and their code ode45. At most a tenth of the domain,
+/// or 100 times `args.step` in one without an end. At a state of rest, where nothing would change in a million times
+/// the domain, the slope says nothing. A component that is zero and has no absolute tolerance has no size.
 template <class Model, class Method, class S>
 MYRIAD_FUNCTION S step_by_slope(const kernel_arguments<Model, real_of<S>>& args,
                                 const integration_state<Model, Method, S>& s, const vec<S, n_state<Model>>& slope) {
@@ -26,10 +35,11 @@ MYRIAD_FUNCTION S step_by_slope(const kernel_arguments<Model, real_of<S>>& args,
         rate = select(tolerance > S(smallest_normal_of<R>), larger(relative, rate), rate);
     });
     rate = team_for<Model>::largest(rate);
-    const S usual = S(args.step), part = S(R(0.1)) * abs(s.data.t_end - s.data.t);
-    const S most = select(part <= S(largest_of<R>), part, S(R(100)) * usual);
+    const S domain = abs(s.data.t_end - s.data.t), part = S(R(0.1)) * domain;
+    const S most = select(part <= S(largest_of<R>), part, S(R(100)) * S(args.step));
     const S h = S(args.first_change) / rate;
-    return smaller(select((rate > S(R(0))) & (h > S(R(0))), h, usual), most);
+    const mask_of<S> known = (h > S(R(0))) & (h <= S(R(1e6)) * domain) & (h <= S(largest_of<R>));
+    return select(known, smaller(h, most), detail::cautious_step(args, domain));
 }
 
 /// By the slope and its change. Hairer, Norsett, Wanner, Solving ODE I, II.4, "Starting step size", in the maximum
@@ -53,7 +63,8 @@ MYRIAD_FUNCTION S step_by_curvature(const kernel_arguments<Model, real_of<S>>& a
     d0 = team_for<Model>::largest(d0);
     d1 = team_for<Model>::largest(d1);
     const mask_of<S> tiny = (d0 < S(R(1e-5))) | (d1 < S(R(1e-5)));
-    const S h0 = select(tiny, S(R(1e-6)), S(R(0.01)) * d0 / d1);
+    const S cautious = detail::cautious_step(args, abs(s.data.t_end - s.data.t));
+    const S h0 = select(tiny, smaller(S(R(1e-6)), cautious), S(R(0.01)) * d0 / d1);
     vec<S, n> y;
     detail::each_component<Method, n>([&](int c) MYRIAD_LAMBDA { y[c] = fma(direction * h0, slope0[c], s.data.y[c]); });
     const auto slope = detail::evaluate_rhs<Model>(fma(direction, h0, s.data.t), y, s.data);
@@ -63,9 +74,9 @@ MYRIAD_FUNCTION S step_by_curvature(const kernel_arguments<Model, real_of<S>>& a
     d2 = team_for<Model>::largest(d2);
     const S most = larger(d1, d2);
     const S power = S(fast_power(S(R(0.01)) / most, S(R(1.0 / (estimate_order<Method> + 1)))));
-    const S h1 = select(most <= S(R(1e-15)), larger(S(R(1e-6)), h0 * S(R(1e-3))), power);
+    const S h1 = select(most <= S(R(1e-15)), h0, power);
     S h = smaller(S(R(100)) * h0, h1);
-    return select(h > S(R(0)), h, S(R(1e-6)));  // the slope is NaN: the trial step will report it
+    return select(h > S(R(0)), h, cautious);  // the slope is NaN: the trial step will report it
 }
 
 /// Sets `data.h_next` of the lanes whose first step is open.

@@ -45,35 +45,38 @@ MYRIAD_FUNCTION R element(const vec<R, m>& values, int j) {
 }
 
 /// The fraction of a step at which an event function crosses, from the cubic through its values and slopes at both
-/// ends, which have the signs of a function that falls. One that starts within `floor` of the surface and leaves it
-/// crosses where it returns.
+/// ends, which have the signs of a function that falls. One whose sign at the start is not that of its side, as right
+/// after its event, crosses there if it goes on, and where it returns if it goes to its side. Without a slope it goes
+/// on if it has `left` the surface since its event, and has come to it again.
 template <class R>
-MYRIAD_FUNCTION R fraction_at(const function_ends<R>& g, R floor, R close) {
-    const bool on_surface = !(g.value > floor);
-    if (on_surface && !(g.slope > R(0))) return R(0);
-    return detail::crossing_fraction(g, on_surface, R(guess_part) * close);
+MYRIAD_FUNCTION R fraction_at(const function_ends<R>& g, bool left, R close) {
+    const bool on_side = g.value > R(0);
+    if (!on_side && (g.slope < R(0) || (left && g.slope == R(0)))) return R(0);
+    return detail::crossing_fraction(g, !on_side, R(guess_part) * close);
 }
 
-/// The earliest crossing in a step. `side` is the side of zero each function was on, `near` says how near to zero it
-/// counts as on the surface, and `tolerance` how closely the crossing is to be located.
-template <class Model, class R, class Nearness>
+/// The earliest crossing in a step. `side` is the side of zero each function was on, and `tolerance` how closely the
+/// crossing is to be located.
+template <class Model, class R>
 MYRIAD_FUNCTION located_crossing<R> earliest_crossing(const step_ends<Model, R>& step,
                                                       const vec<R, n_event<Model>>& side,
                                                       const mask_set<bool, n_event<Model>>& crossed,
-                                                      const Nearness& near, const vec<R, n_event<Model>>& tolerance) {
+                                                      const mask_set<bool, n_event<Model>>& left,
+                                                      const vec<R, n_event<Model>>& tolerance) {
     const auto slope = step.slopes(), slope1 = step.slopes1();
     return detail::first_of<R>(crossed, [&](int j) MYRIAD_LAMBDA {
         const R per_step = side[j] * step.h;
         return detail::fraction_at<R>(
-            {side[j] * step.g[j], per_step * slope[j], side[j] * step.g1[j], per_step * slope1[j]}, near.floor(j),
+            {side[j] * step.g[j], per_step * slope[j], side[j] * step.g1[j], per_step * slope1[j]}, left[j],
             tolerance[j]);
     });
 }
 
 /// The same if just one function has crossed. Threads of a warp with different ones stay together.
-template <class Model, class R, class Nearness>
+template <class Model, class R>
 MYRIAD_FUNCTION located_crossing<R> only_crossing(const step_ends<Model, R>& step, const vec<R, n_event<Model>>& side,
-                                                  const mask_set<bool, n_event<Model>>& crossed, const Nearness& near,
+                                                  const mask_set<bool, n_event<Model>>& crossed,
+                                                  const mask_set<bool, n_event<Model>>& left,
                                                   const vec<R, n_event<Model>>& tolerance) {
     const auto slope = step.slopes(), slope1 = step.slopes1();
     std::int32_t j = 0;
@@ -84,7 +87,7 @@ MYRIAD_FUNCTION located_crossing<R> only_crossing(const step_ends<Model, R>& ste
     const R fraction =
         detail::fraction_at<R>({sign * detail::element(step.g, j), per_step * detail::element(slope, j),
                                 sign * detail::element(step.g1, j), per_step * detail::element(slope1, j)},
-                               near.floor(j), tolerance[j]);
+                               left[j], tolerance[j]);
     return {fraction, j};
 }
 

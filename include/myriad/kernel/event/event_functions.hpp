@@ -74,4 +74,34 @@ MYRIAD_FUNCTION vec<R, n_event<Model>> event_roundings(const R& t, const vec<R, 
     return detail::event_roundings<Model>(t, y, size, p);
 }
 
+/// The signs that event functions show first after (t, y) on the parabola with this slope and second derivative, in the
+/// direction of h: where they and their changes exceed their rounding errors, from the time `first`, but at least its
+/// resolution, to a 64th of t and h. Zero where none does. For functions whose own slope is zero and says nothing, as
+/// that of x^3 at x = 0.
+template <class Model, class R>
+MYRIAD_RARE_FUNCTION vec<R, n_event<Model>> first_signs(R t, vec<R, n_state<Model>> y, vec<R, n_state<Model>> slope,
+                                                        vec<R, n_state<Model>> bend, R first, R h, inputs<Model, R> p) {
+    const auto here = detail::evaluate_events<Model>(t, y, p);
+    vec<R, n_event<Model>> sign{};
+    const R size = abs(t) + abs(h);
+    MYRIAD_ROLLED
+    for (R ahead = max(R(64) * epsilon_of<R> * size, first); ahead * R(64) <= size; ahead *= R(16)) {
+        const R length = copysign(ahead, h);
+        vec<R, n_state<Model>> there;
+        MYRIAD_UNROLL
+        for (int c = 0; c < n_state<Model>; ++c) there[c] = fma(length, fma(R(0.5) * length, bend[c], slope[c]), y[c]);
+        const auto g = detail::evaluate_events<Model>(t + length, there, p);
+        const auto rounding = detail::event_roundings<Model>(t + length, there, p);
+        bool all = true;
+        MYRIAD_UNROLL
+        for (int j = 0; j < n_event<Model>; ++j) {
+            const bool shows = abs(g[j]) > rounding[j] && abs(g[j] - here[j]) > rounding[j];
+            if (sign[j] == R(0) && shows) sign[j] = g[j] > R(0) ? R(1) : R(-1);
+            all = all && sign[j] != R(0);
+        }
+        if (all) break;
+    }
+    return sign;
+}
+
 }  // namespace myriad::detail::inline MYRIAD_TARGET

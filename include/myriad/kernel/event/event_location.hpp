@@ -7,6 +7,7 @@
 #include "myriad/kernel/event/event_nearness.hpp"
 #include "myriad/kernel/event/fired_events.hpp"
 #include "myriad/kernel/event/lane_sides.hpp"
+#include "myriad/kernel/event/side_resolver.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
@@ -58,7 +59,7 @@ struct event_location {
         auto& s = sides.s;
         auto& own = sides.memory_of(i);
         auto& redo = own.redo;
-        const bool again = sides.is_locating(i);
+        const bool again = sides.is_locating(i) && redo.target != redo.none;
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
             const bool undecided = again && redo.crossed[j] && abs(step.g1[j]) <= near.band(j);
@@ -68,27 +69,37 @@ struct event_location {
             redo.tolerance[j] = min(args.event[j].tolerance, R(largest_part) * change);
         }
         located_crossing<R> first;
-        if (MYRIAD_UNLIKELY(part.scanned && !again)) {
+        if (MYRIAD_UNLIKELY(part.scanned && (!again || part.high < R(1)))) {
             first = detail::earliest_crossing_between(part.low, part.high, step, crossed);
         } else if constexpr (Nearness::is_plain) {
-            first = detail::only_crossing(step, side, crossed, near, redo.tolerance);
+            first = detail::only_crossing(step, side, crossed, sides.e.left.of_lane(i), redo.tolerance);
         } else {
-            first = detail::earliest_crossing(step, side, crossed, near, redo.tolerance);
+            first = detail::earliest_crossing(step, side, crossed, sides.e.left.of_lane(i), redo.tolerance);
         }
         redo.target = first.event;
         const R guess = step.h * first.fraction;
         if (again) {
             redo.shorten(step.h, guess);
         } else {
-            redo.begin(step.h, guess, get_lane(s.data.h_next, i));
+            redo.begin(step.h, guess, sides.is_locating(i) ? redo.resume : get_lane(s.data.h_next, i));
         }
         if (redo.length != R(0)) return redo_step(i);
         add_to_count(s.located, i);
         stop_locating(i);
+        const reals rounding = near.roundings_at_start(step);
+        reals heading{};
+        if constexpr (!Nearness::is_plain) {
+            if (!again)
+                heading = side_resolver<Model, Method, S>::headings(step.slopes(), redo.crossed, step.t, step.y,
+                                                                    step.slope, step.h, step.p);
+        }
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
-            const bool close = abs(step.g[j]) <= max(redo.tolerance[j], near.floor(j));
-            const bool happens = redo.target == j || (redo.crossed[j] && (close || redo.narrow));
+            // Others whose crossing cannot be told from this one, as where a redone step arrives; or those that lie
+            // with it between the start and the shortest trial beyond it.
+            const bool close = side[j] * step.g[j] <= max(redo.tolerance[j], rounding[j]);
+            const bool along = redo.crossed[j] && close && side[j] * heading[j] < R(0);
+            const bool happens = redo.target == j || (again ? crossed[j] : along);
             events.put(j, i, happens, step.g[j]);
             own.at_jump.set(j, happens && !close);
         }

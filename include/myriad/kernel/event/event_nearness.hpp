@@ -6,6 +6,7 @@
 #pragma once
 
 #include "myriad/kernel/core/vec.hpp"
+#include "myriad/kernel/event/step_ends.hpp"
 #include "myriad/kernel/state/kernel_arguments.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
@@ -17,8 +18,8 @@ struct plain_nearness {
 
     const kernel_arguments<Model, R>& args;
 
-    MYRIAD_FUNCTION R floor(int) const { return R(0); }
     MYRIAD_FUNCTION R band(int j) const { return args.event[j].tolerance; }
+    MYRIAD_FUNCTION vec<R, n_event<Model>> roundings_at_start(const step_ends<Model, R>&) const { return {}; }
 };
 
 /// For any functions. It lies in memory, as few steps need it.
@@ -26,12 +27,16 @@ template <class R, int events>
 struct event_nearness {
     static constexpr bool is_plain = false;
 
-    vec<R, events> roundings, floors, bands, pasts;
+    vec<R, events> roundings, bands, allowances;
 
-    MYRIAD_FUNCTION R rounding(int j) const { return roundings[j]; }  ///< the rounding error at the end of the trial
-    MYRIAD_FUNCTION R floor(int j) const { return floors[j]; }  ///< one that starts no farther starts on the surface
-    MYRIAD_FUNCTION R band(int j) const { return bands[j]; }    ///< an event is located within this
-    MYRIAD_FUNCTION R past(int j) const { return pasts[j]; }    ///< past zero by no more than this is no crossing
+    MYRIAD_FUNCTION R rounding(int j) const { return roundings[j]; }    ///< the rounding error at the end of the trial
+    MYRIAD_FUNCTION R band(int j) const { return bands[j]; }            ///< an event is located within this
+    MYRIAD_FUNCTION R allowance(int j) const { return allowances[j]; }  ///< past zero by no more is no crossing
+    MYRIAD_FUNCTION R past(int j) const { return max(allowances[j], roundings[j]); }  ///< the same at the trial's end
+    template <class Model>
+    MYRIAD_FUNCTION vec<R, events> roundings_at_start(const step_ends<Model, R>& step) const {
+        return detail::event_roundings<Model>(step.t, step.y, step.p);
+    }
 };
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET

@@ -49,8 +49,8 @@ public:
     MYRIAD_FUNCTION bool is_plain() const { return kind() == kept_side::unknown || kind() == kept_side::beyond; }
 
 private:
-    static constexpr std::int32_t most = 2047;  // a larger number is kept as this
-    static constexpr int exponent_place = 16;
+    static constexpr std::int32_t most = 65535;  // which options::accumulation_limit does not exceed
+    static constexpr int exponent_place = 20;    // of eleven bits at most
     template <class R>
     static constexpr int mantissa_bits = sizeof(R) == sizeof(double) ? 52 : 23;
     std::int32_t code_;

@@ -29,48 +29,55 @@ struct general_locator {
         step.g = detail::evaluate_events<Model>(step.t, step.y, step.p);
         near.roundings = step.roundings();
         resolver{sides}.resolve_open_sides(i, step, near.roundings);
-        const bool locating = sides.is_locating(i);
+        const bool locating = sides.is_locating(i), seeking = locating && own.redo.target != own.redo.none;
         reals side;
         flags crossed;
         crossed.clear();
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
             side[j] = sides.side_of(j, i);
-            // Only as far as it was on the other side at the start may a function be there without having crossed.
-            const R start = own.on_jump[j] ? R(0) : -side[j] * step.g[j];
-            const R tolerance = locating ? own.redo.tolerance[j] : sides.args.event[j].tolerance;
-            near.floors[j] = max(near.roundings[j], start);
-            near.bands[j] = max(tolerance, near.floors[j]);
-            const bool located = locating && (own.redo.target == j || own.redo.crossed[j]);
-            near.pasts[j] = located ? near.bands[j] : near.floors[j];
+            // A function that has not been on its side since its event has not crossed from there while it comes
+            // nearer.
+            const R start = own.on_jump[j] ? R(0) : max(R(0), -side[j] * step.g[j]);
+            const R tolerance = max(start, seeking ? own.redo.tolerance[j] : sides.args.event[j].tolerance);
+            const bool located = seeking && (own.redo.target == j || own.redo.crossed[j]);
+            near.bands[j] = max(tolerance, near.roundings[j]);
+            near.allowances[j] = located ? tolerance : start;
             crossed.set(j, sides.crosses(j, side[j], step.g1[j], near.past(j)) && !sides.is_at_jump(j, i, step.h));
         }
         step_part<R> part;
         if (MYRIAD_UNLIKELY(sides.args.sub_samples > 1)) {
             location{sides}.evaluate_end_slope(i, step, ends);
             part.scanned = true;
-            crossed = scan(i, step, side, part);
+            R turn = R(0);
+            crossed = scan(i, step, side, part, turn);
+            if (turn != R(0)) {
+                own.redo.begin_turn(turn * step.h, locating ? own.redo.resume : get_lane(sides.s.data.h_next, i));
+                location{sides}.redo_step(i);
+                return trial_outcome::is_redone;
+            }
         }
         const bool is_last = get_lane(sides.s.final_step, i) && ends_near_root(i, step);
         arrival reached{};
-        if (locating) {
+        if (seeking) {
             reached = arrival_of(i, step, side);
             // At a root in the other direction, to which a long step has come, the event's is anywhere beyond.
             MYRIAD_UNROLL
             for (int j = 0; j < m; ++j)
                 if (part.scanned && own.redo.target == j && !sides.is_asked(j, side[j])) reached.gap = infinity_of<R>;
         }
-        if (!part.scanned && (crossed.any_of() || (locating ? !reached.is_plain() : is_last)))
+        if (!part.scanned && (crossed.any_of() || (seeking ? !reached.is_plain() : is_last)))
             location{sides}.evaluate_end_slope(i, step, ends);
         if (crossed.any_of()) {
             evaluate_start(i, step, side);
             location{sides}.begin_or_shorten(i, step, side, crossed, part, near, events);
             return trial_outcome::is_redone;
         }
-        if (locating) {
+        if (seeking) {
             if (arrive(i, step, side, reached, events) == trial_outcome::is_redone) return trial_outcome::is_redone;
+        } else if (locating) {
+            location{sides}.end(i);
         } else if (is_last) {
-            evaluate_start(i, step, side);
             end_on_root(i, step, side, events);
         }
         resolver{sides}.update_after_trial(i, step, side);
@@ -91,7 +98,7 @@ private:
         }
         return any_near;
     }
-    /// The part of the last step beyond which rounding could not be told from a slow approach.
+    /// A function whose value at the end is a larger part of its change in the last step has no event there.
     static constexpr double last_part = 1.0 / 64;
 
     /// Evaluates the event functions at the start of the step. A function at a jump that no step has passed yet counts
@@ -102,33 +109,97 @@ private:
         for (int j = 0; j < m; ++j)
             if (sides.memory_of(i).on_jump[j]) step.g[j] = copysign(R(infinity_of<R>), side[j]);
     }
-    /// Checks `sub_samples` points of the step for the first crossing, updates the sides up to it, and sets `part` to
-    /// the part of the step that contains it.
-    MYRIAD_FUNCTION flags scan(int i, const ends_of_step& step, reals& side, step_part<R>& part) const {
+    /// Checks `sub_samples` points of the step, and those between them where an event function turns back to its side,
+    /// for the first crossing, updates the sides up to it, and sets `part` to the part of the step that contains it.
+    /// Sets `turn` to the first place inside the step, if it has one, where a function turns: the step is to end there
+    /// instead, as the cubic is less accurate than the step.
+    MYRIAD_FUNCTION flags scan(int i, const ends_of_step& step, reals& side, step_part<R>& part, R& turn) const {
         const auto& args = sides.args;
-        const auto& near = sides.memory_of(i).near;
-        auto& e = sides.e;
+        const auto& g1 = step.g1;
         flags crossed;
         crossed.clear();
+        moving before = step.moving_values_at(R(0));
         MYRIAD_ROLLED
         for (int k = 1; k <= args.sub_samples; ++k) {
             const bool last = k == args.sub_samples;
-            const R theta = static_cast<R>(k) / static_cast<R>(args.sub_samples), length = theta * step.h;
-            const reals g = last ? step.g1 : step.values_at(theta);
-            MYRIAD_UNROLL
-            for (int j = 0; j < m; ++j)
-                crossed.set(j, sides.crosses(j, side[j], g[j], near.past(j)) && !sides.is_at_jump(j, i, length));
+            const R theta = last ? R(1) : static_cast<R>(k) / static_cast<R>(args.sub_samples);
+            const moving after = step.moving_values_at(theta);
+            MYRIAD_ROLLED
+            for (int turns = 0; turns < m; ++turns) {
+                const R place = first_turn(step, side, part.low, theta, before, after);
+                if (!(place > part.low && place < theta)) break;
+                const bool shortens = is_adaptive<Method> && place > R(least_turn) && place < R(1) - R(least_turn);
+                if (shortens && !(sides.is_locating(i) && sides.memory_of(i).redo.target != redone::none)) {
+                    turn = place;
+                    return crossed;
+                }
+                before = step.moving_values_at(place);
+                crossed = look(i, step, side, place, values_of(before));
+                if (crossed.any_of()) {
+                    part.high = place;
+                    return crossed;
+                }
+                part.low = place;
+            }
+            crossed = look(i, step, side, theta, last ? g1 : values_of(after));
             if (crossed.any_of()) {
                 part.high = theta;
-                break;
+                return crossed;
             }
             if (!last) part.low = theta;
-            MYRIAD_UNROLL
-            for (int j = 0; j < m; ++j) {
-                if (!(abs(g[j]) > near.past(j)) || sides.is_at_jump(j, i, length)) continue;
-                side[j] = sign_of(g[j]);
-                if (!sides.is_timeless(i, length) && !sides.memory_of(i).on_jump[j]) e.left.set(j, i, true);
+            before = after;
+        }
+        return crossed;
+    }
+    /// A turn closer to an end of the step is looked at on the cubic, which is accurate there.
+    static constexpr double least_turn = 1.0 / 4096;
+    using moving = vec<dual<R>, m>;  // the event functions, with their slopes per step
+    using redone = redone_step<R, m>;
+
+    static MYRIAD_FUNCTION reals values_of(const moving& g) {
+        reals values;
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) values[j] = g[j].value;
+        return values;
+    }
+    /// The first place between two points of the step at which a function that moves towards zero at the first and away
+    /// from it at the second turns, by bisection, since such a function may be flat; the second if there is none.
+    MYRIAD_FUNCTION R first_turn(const ends_of_step& step, const reals& side, R from, R to, const moving& before,
+                                 const moving& after) const {
+        R first = to;
+        MYRIAD_ROLLED
+        for (int j = 0; j < m; ++j) {
+            const R falls = -side[j] * before[j].derivative, rises = side[j] * after[j].derivative;
+            const R least = epsilon_of<R> * max(abs(before[j].value), abs(after[j].value));  // less changes no value
+            if (!(falls > least && rises > least && side[j] * before[j].value > R(0))) continue;
+            R low = from, high = to;
+            MYRIAD_ROLLED
+            while (high - low > R(4) * epsilon_of<R> * high) {
+                const R middle = R(0.5) * (low + high);
+                (side[j] * step.moving_values_at(middle)[j].derivative < R(0) ? low : high) = middle;
             }
+            first = min(first, high);
+        }
+        return first;
+    }
+    /// Compares the values g of the event functions at a point of the step with their sides. Returns the functions that
+    /// have crossed; if there are none, the sides become those at this point.
+    MYRIAD_FUNCTION flags look(int i, const ends_of_step& step, reals& side, R theta, const reals& g) const {
+        const auto& own = sides.memory_of(i);
+        const R length = theta * step.h;
+        const reals rounding = theta < R(1) ? step.roundings_at(theta) : own.near.roundings;
+        flags crossed;
+        crossed.clear();
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j)
+            crossed.set(j, sides.crosses(j, side[j], g[j], max(own.near.allowance(j), rounding[j])) &&
+                               !sides.is_at_jump(j, i, length));
+        if (crossed.any_of()) return crossed;
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) {
+            if (!(abs(g[j]) > max(own.near.allowance(j), rounding[j])) || sides.is_at_jump(j, i, length)) continue;
+            side[j] = sign_of(g[j]);
+            if (!sides.is_timeless(i, length) && !own.on_jump[j]) sides.e.left.set(j, i, true);
         }
         return crossed;
     }
@@ -154,7 +225,7 @@ private:
             if (redo.target == j) {
                 reached.gap = side[j] * step.g1[j];
                 reached.band = near.band(j);
-                reached.close = max(R(arrival_part) * redo.tolerance[j], R(0.5) * near.rounding(j));
+                reached.close = max(R(arrival_part) * redo.tolerance[j], R(0.125) * near.rounding(j));
             } else {
                 reached.others = reached.others || redo.crossed[j];
             }
@@ -162,7 +233,9 @@ private:
         return reached;
     }
 
-    /// Handles a redone step that ended before its crossing: close to it its events fire; else it is lengthened.
+    /// Handles a redone step that ended before its crossing: close to it its events fire; else it is lengthened. Other
+    /// functions that crossed in the trial before fire along if their crossings cannot be told from this one: they are
+    /// within their tolerance or rounding error, and go to their other side; or they lie within the rounding of time.
     MYRIAD_FUNCTION trial_outcome arrive(int i, const ends_of_step& step, const reals& side, const arrival& reached,
                                          fired& events) const {
         auto& e = sides.e;
@@ -170,25 +243,49 @@ private:
         auto& redo = own.redo;
         const auto& near = own.near;
         const bool narrow = redo.is_between(step.h);
-        reals slope = step.g1, middle = step.g1;
+        reals slope = step.g1, heading = step.g1, middle = step.g1;
         if (!reached.is_plain()) {
             slope = step.slopes1();
+            heading = resolver::headings(slope, redo.crossed, step.t1, step.y1, step.slope1, step.h, step.p);
             if (!reached.all_left) middle = step.values_at(R(0.5));
         }
-        if (!reached.is_close()) {
-            R approach = R(0);
-            MYRIAD_UNROLL
-            for (int j = 0; j < m; ++j)
-                if (redo.target == j) approach = side[j] * slope[j];
+        R approach = R(0);
+        bool leaves =
+            false;  // the surface where it fired last, so that its crossing is later, however near it is to zero
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) {
+            if (redo.target != j) continue;
+            approach = side[j] * slope[j];
+            leaves = !reached.all_left && !e.left.get(j, i) && reached.gap >= R(0) && side[j] * heading[j] > R(0);
+        }
+        if (!reached.is_close() || leaves) {
             const R guess = step.h - reached.gap * reciprocal(approach);
-            const bool short_of_it = reached.gap > reached.band;
+            const bool short_of_it = reached.gap > reached.band || leaves;
             bool further = short_of_it && !narrow && redo.tries < redo.most_trials;
             if (further) {
                 redo.lengthen(step.h, guess);
             } else {
                 further = abs(reached.gap) <= reached.band && redo.improve(step.h, guess, reached.gap > R(0));
+                MYRIAD_UNROLL
+                for (int j = 0; j < m; ++j)  // of those that cross in the shortest trial known to end beyond
+                    if (redo.target != j && !(reached.gap > R(0)) && abs(step.g1[j]) > near.band(j))
+                        redo.crossed.set(j, false);
             }
             if (further) {
+                location{sides}.redo_step(i);
+                return trial_outcome::is_redone;
+            }
+        } else if (!narrow && reached.gap >= R(0)) {
+            // Others that have crossed where this one is as close beyond zero cross here too.
+            const R ahead = -(reached.gap + reached.close) * reciprocal(approach);
+            bool undecided = false;
+            MYRIAD_UNROLL
+            for (int j = 0; j < m; ++j) {
+                if (redo.target == j || !redo.crossed[j] || !(side[j] * heading[j] < R(0))) continue;
+                const bool soon = slope[j] == R(0) || abs(step.g1[j]) <= R(2) * abs(slope[j] * ahead);
+                undecided = undecided || (soon && abs(step.g1[j]) > near.band(j));
+            }
+            if (undecided && redo.improve(step.h, step.h + ahead, true)) {
                 location{sides}.redo_step(i);
                 return trial_outcome::is_redone;
             }
@@ -197,7 +294,7 @@ private:
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
             const R band = near.band(j);
-            const bool heads = abs(step.g1[j]) <= band && side[j] * slope[j] * step.h < R(0);
+            const bool heads = abs(step.g1[j]) <= band && side[j] * heading[j] < R(0);
             const bool jumps = narrow && side[j] * step.g1[j] > band;
             const bool happens = redo.target == j || (redo.crossed[j] && (heads || jumps));
             events.put(j, i, happens, step.g1[j]);
@@ -208,37 +305,39 @@ private:
         return trial_outcome::stands;
     }
 
-    /// Events at t_end or a stop: a function moving towards zero fires if it is at or past zero, or short of it
-    /// by rounding alone, judged by both its slope and the last step. A function that comes to rest at zero, or is
-    /// still falling towards it, gets there later or never; one that is about to turn back, as at a double root, does
-    /// not cross it.
+    /// Events at t_end or a stop: a function fires if it is at zero or past it, or reaches zero within the rounding of
+    /// the time of that end, and if the first sign that it shows beyond is that of its other side. One that comes to
+    /// rest at zero or turns back there, as at a double root, does not, nor does one that only approaches zero.
     MYRIAD_FUNCTION void end_on_root(int i, const ends_of_step& step, const reals& side, fired& events) const {
         auto& own = sides.memory_of(i);
-        const reals slope = step.slopes1();
-        const R rounding = end_rounding(i, step);
+        const R rounding = end_rounding(i, step), reach = copysign(rounding, step.h);
+        typename ends_of_step::state bend, there;
+        MYRIAD_UNROLL
+        for (int c = 0; c < n_state<Model>; ++c) {
+            bend[c] = (step.slope1[c] - step.slope[c]) / step.h;
+            there[c] = fma(reach, step.slope1[c], step.y1[c]);
+        }
+        const reals beyond = detail::evaluate_events<Model>(step.t1 + reach, there, step.p);
+        const reals sign =
+            detail::first_signs<Model>(step.t1, step.y1, step.slope1, bend, R(2) * rounding, step.h, step.p);
         own.at_jump.clear();
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
-            const R g = side[j] * step.g1[j], speed = -side[j] * slope[j] * sign_of(step.h);  // towards zero
-            const R last_speed = (side[j] * step.g[j] - g) / abs(step.h);
-            const bool at_zero = g <= R(0) || g <= (speed < last_speed ? speed : last_speed) * rounding;
-            const bool close = abs(g) <= sides.args.event[j].end_tolerance;
-            // The discriminant of the parabola through the last step's start, with the slope at its end.
-            const R bend = (last_speed - speed) / abs(step.h);
-            const bool turns = speed * speed <= R(8) * bend * (abs(g) + own.near.rounding(j));
-            events.put(j, i, sides.is_asked(j, side[j]) && close && speed > R(0) && at_zero && !turns, step.g1[j]);
+            const bool reaches = side[j] * step.g1[j] <= R(0) || side[j] * beyond[j] <= R(0);
+            const bool close = abs(step.g1[j]) <= sides.args.event[j].end_tolerance;
+            const bool happens = reaches && close && sides.is_asked(j, side[j]) && side[j] * sign[j] < R(0);
+            events.put(j, i, happens, step.g1[j]);
+            own.at_jump.set(j, happens && abs(step.g1[j]) > own.near.band(j));
         }
     }
 
-    /// A bound on the time between t_end or a stop and a crossing that the phase's rounding errors may have
-    /// caused; capped at a small part of a step, beyond which it could not be told from a slow approach.
+    /// A bound on the time between t_end or a stop and a crossing that the phase's rounding errors may have caused.
     MYRIAD_FUNCTION R end_rounding(int i, const ends_of_step& step) const {
         const auto& args = sides.args;
         const auto& s = sides.s;
         const R t_begin = args.t_begin != nullptr ? args.t_begin[s.instance[i]] : args.common_t_begin;
         const R steps = static_cast<R>(s.iterations_of(args, i));
-        const R rounding = R(2) * epsilon_of<R> * steps * max(abs(step.t1), abs(t_begin));
-        return min(rounding, R(last_part) * abs(step.h));
+        return R(2) * epsilon_of<R> * steps * max(abs(step.t1), abs(t_begin));
     }
 };
 

@@ -16,8 +16,10 @@ template <class R, int events>
 struct redone_step {
     /// Number of trials after which bisection replaces a guess that does not converge.
     static constexpr std::int32_t most_guesses = 10;
-    /// A step halved this often is no longer than the rounding of its ends.
-    static constexpr std::int32_t most_trials = 80;
+    /// Enough for a bracket of any two lengths: a factor of 1024 a trial until one ends before the event, then halves.
+    static constexpr std::int32_t most_trials = 256;
+    /// The target of a step that is redone to end where event functions turn.
+    static constexpr std::int32_t none = -1;
 
     R length;          // of the next trial; 0: the event is at the start of the step
     R before, beyond;  // the bracket: longest length known to end before the event, shortest beyond it; or the start
@@ -47,9 +49,19 @@ struct redone_step {
     MYRIAD_FUNCTION void shorten(R h, R guess) {
         ++tries;
         beyond = h;
-        length = tries < most_guesses && is_inside(guess, h) ? guess : R(0.5) * (before + h);
+        // A function much steeper beyond the event than at it: 1024 times nearer to the start, until that is too near.
+        const R middle = before == R(0) ? R(1.0 / 1024) * h : R(0.5) * (before + h);
+        length = tries < most_guesses && is_inside(guess, h) ? guess : middle;
         narrow = are_one(before, h);
         if (narrow || tries >= most_trials) length = before;
+    }
+    /// The step of length h is to be redone with this length, to end where an event function turns.
+    MYRIAD_FUNCTION void begin_turn(R turn, R h_next) {
+        clear();
+        resume = h_next;
+        length = turn;
+        target = none;
+        crossed.clear();
     }
     /// A bound on the distance in time of a jump from where it was located, but for the rounding of t.
     MYRIAD_FUNCTION R error() const {

@@ -94,13 +94,12 @@ struct side_resolver {
         const flags open = own.open, held = own.held, fired_last = own.fired_last;
         if (!open.any_of()) return;
         const reals slope = step.slopes();
+        const reals heading = headings(slope, open, step.t, step.y, step.slope, step.h, step.p);
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
             if (!open[j]) continue;
             const bool turns = fired_last[j] && abs(slope[j] * step.h) > rounding[j];
-            const R heading =
-                held[j] && !turns ? (sides.e.above.get(j, i) ? R(1) : R(-1)) : sign_of(slope[j]) * sign_of(step.h);
-            sides.put_side(j, i, heading);
+            sides.put_side(j, i, held[j] && !turns ? (sides.e.above.get(j, i) ? R(1) : R(-1)) : heading[j]);
         }
     }
 
@@ -129,10 +128,10 @@ struct side_resolver {
     MYRIAD_FUNCTION void update_after_events(int i, const fired& events, const lane_data<Model, S>& found) const {
         auto& s = sides.s;
         auto& e = sides.e;
-        const R sense = sign_of(get_lane(s.h, i));
         auto& on_jump = sides.memory_of(i).on_jump;
-        const reals before = headings(i, found, events);
-        reals g = get_lanes<R>(events.value, i), slope = before;
+        reals slope_before;
+        const reals before = headings_at_events(i, found, events, slope_before);
+        reals g = get_lanes<R>(events.value, i), slope = slope_before, heading = before;
         bool known = !get_lane(events.changed, i);
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) known = known && !on_jump[j] && !fires_at_jump(j, i, events);
@@ -144,6 +143,7 @@ struct side_resolver {
             const state y = get_lanes<R>(s.data.y, i);
             g = detail::evaluate_events<Model>(t, y, p);
             slope = detail::event_slopes<Model>(t, y, along, p);
+            heading = headings(slope, events.which.of_lane(i), t, y, along, get_lane(s.h, i), p);
         }
         flags at_jump, in_question;
         at_jump.clear();
@@ -158,8 +158,9 @@ struct side_resolver {
         for (int j = 0; j < m; ++j) {
             const bool fires = events.which.get(j, i), waits = !fires && on_jump[j];
             const bool jumps = fires_at_jump(j, i, events);
-            // An event's action that hardly moves its function leaves it on the surface, as closely as it was located.
-            const R residual = fires && !jumps ? R(2) * abs(get_lane(events.value[j], i)) : R(0);
+            // An action that hardly moves its event's function leaves it on the surface, as closely as it was located.
+            const R located = R(2) * abs(get_lane(events.value[j], i));
+            const R residual = fires && !jumps ? min(located, sides.args.event[j].tolerance) : R(0);
             const bool beyond = abs(g[j]) > max(rounding[j], residual);
             if (g[j] != g[j]) e.flags.set(e.undefined, i, true);
             if (waits) {
@@ -167,10 +168,10 @@ struct side_resolver {
                 on_jump.set(j, false);
                 sides.put_side(j, i, beyond ? sign_of(g[j]) : R(0));
             } else if (fires) {
-                const R from = sides.side_of(j, i), ahead = sign_of(slope[j]) * sense;
+                const R from = sides.side_of(j, i), ahead = heading[j];
                 const bool moved = g[j] != get_lane(events.value[j], i);
-                const bool acted = moved || slope[j] != before[j];
-                const bool unresolved = from * sign_of(before[j]) * sense > R(0);
+                const bool acted = moved || slope[j] != slope_before[j] || ahead != before[j];
+                const bool unresolved = from * before[j] > R(0);
                 const bool rests = ahead == R(0) && !e.left.get(j, i);
                 at_jump.set(j, jumps && (moved || !unresolved) && beyond);
                 R side = ahead;
@@ -187,30 +188,56 @@ struct side_resolver {
         sides.update_in_question(i);
     }
 
+    /// The sides to which the event functions go from (t, y), in the direction of h: +1, -1, or 0 for those that rest.
+    /// Their slopes tell; of functions in `wanted` without one, the values ahead.
+    static MYRIAD_FUNCTION reals headings(const reals& slope, const flags& wanted, const R& t, const state& y,
+                                          const state& along, const R& h, const inputs<Model, R>& p) {
+        reals heading;
+        bool flat = false;
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) {
+            heading[j] = sign_of(slope[j]) * sign_of(h);
+            flat = flat || (wanted[j] && slope[j] == R(0));
+        }
+        if (!MYRIAD_UNLIKELY(flat)) return heading;
+        const reals sign = detail::first_signs<Model>(t, y, along, state{}, R(0), h, p);
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j)
+            if (slope[j] == R(0)) heading[j] = sign[j];
+        return heading;
+    }
+
 private:
     MYRIAD_FUNCTION bool fires_at_jump(int j, int i, const fired& events) const {
         return events.which.get(j, i) && sides.memory_of(i).at_jump[j];
     }
-    /// Slopes of the event functions of lane i along the solution, from the data `at`. For a function right before a
-    /// jump, where the slope is zero, a number of the sign that it would have: towards the jump if the function is past
-    /// it a little ahead.
-    MYRIAD_FUNCTION reals headings(int i, const lane_data<Model, S>& at, const fired& events) const {
+    /// The same for events that fire in lane i, from the data `at`. A function right before a jump goes towards the
+    /// jump if it is past it a little ahead.
+    MYRIAD_FUNCTION reals headings_at_events(int i, const lane_data<Model, S>& at, const fired& events,
+                                             reals& slope) const {
         auto& s = sides.s;
-        const state along = s.slopes.of_lane(i, s.now(), at, s.extra_evaluations);
+        const state along = s.slopes.of_lane(i, s.now(), at, s.extra_evaluations), y = get_lanes<R>(at.y, i);
         const auto& p = sides.inputs_of(i, at);
-        reals slope = detail::event_slopes<Model>(get_lane(s.now(), i), get_lanes<R>(at.y, i), along, p);
-        bool jumps = false;
+        const R t = get_lane(s.now(), i);
+        flags jumps, smooth;
+        jumps.clear();
+        smooth.clear();
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) jumps = jumps || fires_at_jump(j, i, events);
-        if (!jumps) return slope;
+        for (int j = 0; j < m; ++j) {
+            jumps.set(j, fires_at_jump(j, i, events));
+            smooth.set(j, events.which.get(j, i) && !jumps[j]);
+        }
+        slope = detail::event_slopes<Model>(t, y, along, p);
+        reals heading = headings(slope, smooth, t, y, along, get_lane(s.h, i), p);
+        if (!jumps.any_of()) return heading;
         const reals g = values_ahead(i, at, along);
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
-            if (!fires_at_jump(j, i, events)) continue;
+            if (!jumps[j]) continue;
             const R side = sides.side_of(j, i);
-            slope[j] = (g[j] * side > R(0) ? side : -side) * sign_of(get_lane(s.h, i));
+            heading[j] = g[j] * side > R(0) ? side : -side;
         }
-        return slope;
+        return heading;
     }
 
     /// The number of roundings of t to the point ahead of a jump.

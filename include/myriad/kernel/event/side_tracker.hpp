@@ -88,7 +88,8 @@ struct side_tracker {
                 if (!moved[j]) continue;
                 const bool is_there = abs(now) <= rounding[j], was_there = abs(then) <= rounding[j];
                 // Right after its event a function that a hook hardly moves is as good as on the surface.
-                const bool keeps = is_there ? was_there : !e.left.get(j, i) && abs(now) <= R(2) * abs(then);
+                const R residual = min(R(2) * abs(then), sides.args.event[j].tolerance);
+                const bool keeps = is_there ? was_there : !e.left.get(j, i) && abs(now) <= residual;
                 if (!keeps) sides.put_side(j, i, is_there ? R(0) : sign_of(now));
             }
             e.flags.set(e.undefined, i, undefined);

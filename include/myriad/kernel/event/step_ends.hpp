@@ -21,8 +21,16 @@ struct step_ends {
 
     /// The event functions at fraction theta of the step, on the cubic through its ends.
     MYRIAD_FUNCTION event_values values_at(R theta) const {
-        const state inside = detail::hermite_interpolation(y, y1, slope, slope1, h, theta);
-        return detail::evaluate_events<Model>(fma(theta, h, t), inside, p);
+        return detail::evaluate_events<Model>(fma(theta, h, t), state_at(theta), p);
+    }
+    /// The same with their slopes per step.
+    MYRIAD_FUNCTION vec<dual<R>, n_event<Model>> moving_values_at(R theta) const {
+        const auto inside = detail::hermite_interpolation(y, y1, slope, slope1, h, dual<R>(theta, R(1)));
+        return Model::template events<dual<R>>(dual<R>(fma(theta, h, t), h), inside, p);
+    }
+    /// Their rounding errors there.
+    MYRIAD_FUNCTION event_values roundings_at(R theta) const {
+        return detail::event_roundings<Model>(fma(theta, h, t), state_at(theta), p);
     }
     /// The rounding errors of the event functions at the end: the state there is the sum of that at the start and of
     /// increments.
@@ -35,6 +43,11 @@ struct step_ends {
     /// Slopes of the event functions along the solution, at the start and at the end.
     MYRIAD_FUNCTION event_values slopes() const { return detail::event_slopes<Model>(t, y, slope, p); }
     MYRIAD_FUNCTION event_values slopes1() const { return detail::event_slopes<Model>(t1, y1, slope1, p); }
+
+private:
+    MYRIAD_FUNCTION state state_at(R theta) const {
+        return detail::hermite_interpolation(y, y1, slope, slope1, h, theta);
+    }
 };
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET
