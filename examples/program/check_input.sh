@@ -50,6 +50,9 @@ bad '^bad\.toml:4:1: .*is not empty and holds no study' -e 's/"results"/"."/'
 sed 's/^k = .*/k = "2 pi"/' good.toml >bad.toml
 expect 2 'bad\.toml:8:1: axes\.k: must be an array of values' "$program" run bad.toml
 expect 2 'none\.toml: there is no such file' "$program" run none.toml
+expect 2 '^\.: is a folder' "$program" run .
+expect 2 '^/dev/null: is a device or a pipe' "$program" run /dev/null
+bad '^bad\.toml:5:.*t_begin is set to inf' -e 's/\[0, "2 pi"/[inf, "2 pi"/'
 expect 2 'folder' "$program" resume none
 expect 2 'folder' "$program" info none
 
@@ -71,6 +74,11 @@ sed -e 's/"results"/"reduced"/' \
 expect 0 '' "$program" run reduced.toml --quiet
 "$program" info reduced >shown
 for name in x_histograms x_histograms_outside x_quantiles; do grep -q "$name" shown || fail "there is no $name"; done
+
+# A study of which nothing can be integrated, since nothing ends its phases.
+sed -e 's/"2 pi"/inf/' -e 's/"results"/"invalid"/' good.toml >invalid.toml
+expect 2 'all 192 instances are invalid_input' "$program" run invalid.toml --quiet
+expect 2 'all 192 instances are invalid_input' "$program" resume invalid --quiet
 
 # Another study in the same folder: what differs, and where.
 expect 0 '' "$program" run good.toml --quiet

@@ -47,6 +47,8 @@ class MyriadRecipe(ConanFile):
         toolchain = CMakeToolchain(self)
         for part in ("TESTS", "EXAMPLES", "BENCHMARKS", "VALIDATION"):
             toolchain.cache_variables[f"MYRIAD_BUILD_{part}"] = False
+        for part in ("STUDY", "MPI"):  # whatever this machine has, as the package does not ask for what they need
+            toolchain.cache_variables[f"MYRIAD_BUILD_{part}"] = "OFF"
         toolchain.cache_variables["MYRIAD_ENABLE_CUDA"] = bool(self.options.cuda)
         xsimd = self.dependencies["xsimd"].cpp_info.includedirs[0]
         toolchain.cache_variables["MYRIAD_XSIMD_INCLUDE_DIR"] = xsimd.replace("\\", "/")

@@ -26,6 +26,8 @@ class Myriad(CMakePackage, CudaPackage):
     def cmake_args(self):
         args = [self.define(f"MYRIAD_BUILD_{part}", False) for part in
                 ("TESTS", "EXAMPLES", "BENCHMARKS", "VALIDATION")]
+        # Whatever this machine has, as the package does not depend on what they need.
+        args += [self.define(f"MYRIAD_BUILD_{part}", "OFF") for part in ("STUDY", "MPI")]
         args.append(self.define_from_variant("MYRIAD_ENABLE_CUDA", "cuda"))
         if self.spec.satisfies("+cuda") and "none" not in self.spec.variants["cuda_arch"].value:
             args.append(self.define("MYRIAD_CUDA_ARCHITECTURES", self.spec.variants["cuda_arch"].value))

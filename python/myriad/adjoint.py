@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import _core, cache, compiler, nvrtc, symbols as sym
+from . import _core, cache, compiler, nvrtc, state_jumps, symbols as sym
 from .components import Components
 from .cpp import Names, Writer
 from .derivatives import directional, transposed
@@ -134,7 +134,7 @@ class Adjoint:
         for number, one in enumerate(self._actions):
             functions += self._action(one, writer, number, v, [*symbols, sym.time], count)
         switches = self.model.switches
-        between = self.model.accessories.index(switches.between.value[1]) if switches.at_jump else -1
+        between = self.model.accessories.index(switches.switches[0].between.value[1]) if switches.switches else -1
         are_events = ", ".join("true" if isinstance(one, Event) else "false" for one in self._actions)
         body = "\n\n".join("\n".join(f"    {line}" for line in function) for function in functions)
         library = "adjoint_library.hpp" if self._gpu is None else "device_adjoint.cuh"
@@ -164,8 +164,7 @@ class Adjoint:
         if self._gpu is not None:
             return nvrtc.single_kernel(self.source(), "myriad_adjoint", self._gpu)
         by, source = compiler.compiler(), self.source()
-        loaded = cache.obtain(by.made_from(source), lambda folder: compiler._compile(by, source, folder),
-                              ctypes.CDLL).loaded
+        loaded = cache.functions(by, source, lambda folder: compiler._compile(by, source, folder))
         function = loaded.myriad_adjoint
         function.argtypes, function.restype = [ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64], None
         return function
@@ -251,9 +250,9 @@ def _checked(model: AnyModel, by: Sequence[str]) -> Model:
     if model.triggers or model.queue is not None:
         raise _refuse("the model has triggers")
     switches = model.switches
-    if any(target not in switches.at_jump for target, _ in (*model.initialise, *model.after_step, *model.finalise)):
+    if any(target not in switches.at_start for target, _ in (*model.initialise, *model.after_step, *model.finalise)):
         raise _refuse("the model has hooks or accessories")
-    if any(s.value[0] in ("accessory", "integer_accessory") and s not in switches.at_jump
+    if any(s.value[0] in ("accessory", "integer_accessory") and s not in switches.at_start
            for s in symbols_of(model.rhs)):
         raise _refuse("the equations read accessories")
     components = Components(model)
@@ -266,7 +265,7 @@ def _checked(model: AnyModel, by: Sequence[str]) -> Model:
         if isinstance(one, Event) and one.stop_after:
             raise _refuse(f"{what} ends phases")
         for target, value in one.do:
-            if target in switches.at_jump:
+            if target in switches.at_start:
                 continue
             if target in switches.needed:
                 raise _refuse(f"{what} changes when the equations jump")
@@ -280,13 +279,14 @@ def _checked(model: AnyModel, by: Sequence[str]) -> Model:
         # where the slope jumps, that before an event is not known from its state
         if one in acting and is_event and (jump := next(filter(_may_jump, walk(model.rhs)), None)) is not None:
             raise _refuse(f"{what} acts, and the equations have `{text(jump)}`, which may jump there")
+    state_jumps.refuse(model, "adjoint")
     return model
 
 
 def _actions(model: Model) -> list[Any]:
     """The events and stops that change the state."""
     return [one for one in (*model.events, *model.stops) if any(
-        target not in model.switches.at_jump for target, _ in one.do)]
+        target not in model.switches.at_start for target, _ in one.do)]
 
 
 def _may_jump(node: Node) -> bool:

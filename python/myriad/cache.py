@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import pathlib
 import warnings
 from collections.abc import Callable
@@ -36,6 +37,17 @@ def obtain(made_from: bytes, make: Callable[[str], None], load: Callable[[str], 
     if distrusted:
         warnings.warn(objection, RuntimeWarning, stacklevel=2)
     return Obtained(loaded, hit, None if hit else objection or None)
+
+
+def functions(by: _core.Compiler, source: str, make: Callable[[str], object]) -> ctypes.CDLL:
+    """The functions of a library that `make(folder)` has a compiler make of a source, for `ctypes`."""
+    made_from = by.made_from(source)
+
+    def load(path: str) -> ctypes.CDLL:
+        return ctypes.CDLL(path, handle=_core.load_library(path, made_from))
+
+    library: ctypes.CDLL = obtain(made_from, make, load).loaded
+    return library
 
 
 def prepare() -> bool:

@@ -66,9 +66,9 @@ def _prepare(by: _core.Compiler) -> None:
         by.prepare()
 
 
-def _load(by: _core.Compiler, path: str) -> _core.Library:
+def _load(by: _core.Compiler, path: str, made_from: bytes) -> _core.Library:
     try:
-        return _core.Library(path)
+        return _core.Library(path, made_from)
     except Error as error:
         raise Error(f"what {by.name} made of the model cannot be loaded: use a C++ compiler, such as g++ and not gcc "
                     f"({error})") from None
@@ -102,7 +102,8 @@ def kernel(header: str, struct: str, method: str, real: str) -> Kernel:
         return Kernel(_loaded[asked], "memory", time.perf_counter() - begin)
     by = compiler()
     source = source_of(header, struct, method, real)
-    obtained = cache.obtain(by.made_from(source), lambda folder: _compile(by, source, folder),
-                            lambda path: _load(by, path))
+    made_from = by.made_from(source)
+    obtained = cache.obtain(made_from, lambda folder: _compile(by, source, folder),
+                            lambda path: _load(by, path, made_from))
     _loaded[asked] = obtained.loaded
     return kernel_of(obtained, by.kind, begin)

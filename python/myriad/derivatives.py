@@ -54,15 +54,15 @@ _partials: dict[str, Callable[..., Sequence[Any]]] = {
     "log1p": lambda f, a: (1 / (1 + a),),
     "log2": lambda f, a: (1 / (_ln2 * a),),
     "log10": lambda f, a: (1 / (_ln10 * a),),
-    "hypot": lambda f, a, b: (a / f, b / f),
-    "atan2": lambda f, a, b: (b / (a * a + b * b), -a / (a * a + b * b)),
+    "hypot": lambda f, a, b: (_quotient(a, f), _quotient(b, f)),
+    "atan2": lambda f, a, b: (_quotient(b, a * a + b * b), _quotient(-a, a * a + b * b)),
     "fmod": lambda f, a, b: (1, -ex.round((a - f) / b)),
     "floor_mod": lambda f, a, b: (1, -(a // b)),
     "floor_divide": lambda f, a, b: (None, None),
     "copysign": lambda f, a, b: (ex.copysign(1.0, a) * ex.copysign(1.0, b), None),
     "select": lambda f, chosen, a, b: (None, chosen, ~chosen),
-    "min": lambda f, a, b: (a <= b, ~(a <= b)),
-    "max": lambda f, a, b: (a >= b, ~(a >= b)),
+    "min": lambda f, a, b: (a < b, ~(a < b)),
+    "max": lambda f, a, b: (a > b, ~(a > b)),
     "pow": lambda f, a, b: _of_power(f, a, b, ex.pow),
     "powr": lambda f, a, b: _of_power(f, a, b, ex.powr),
     "dot": lambda f, *_: [ex.make("element", value=(f.value[0], place)) for place in f.value[0].places(f.value[1])],
@@ -70,10 +70,21 @@ _partials: dict[str, Callable[..., Sequence[Any]]] = {
 }
 
 
+# Functions with finite values where a partial derivative is infinite, or a product that has no value, as sqrt at zero.
+_singular = {"sqrt", "cbrt", "asin", "acos", "log", "log1p", "log2", "log10", "hypot", "atan2", "pow", "powr"}
+
+
+def _quotient(a: Expression, by: Expression) -> Expression:
+    """a / by; zero where both are."""
+    return ex.where(by == 0.0, 0.0, a / by)
+
+
 def _of_power(f: Expression, base: Expression, exponent: Expression,
               power: Callable[[Operand, Operand], Expression]) -> tuple[Expression, Expression | None]:
-    by_exponent = f * ex.log(base) if exponent.op != "constant" else None
-    return exponent * power(base, exponent - 1), by_exponent
+    slope = exponent * power(base, exponent - 1)
+    if exponent.op == "constant":
+        return slope, None
+    return ex.where(exponent == 0.0, 0.0, slope), ex.where(f == 0.0, 0.0, f * ex.log(base))
 
 
 def _times(partial: Expression | Condition | int, derivative: Expression) -> Expression:
@@ -85,6 +96,29 @@ def _times(partial: Expression | Condition | int, derivative: Expression) -> Exp
     if derivative.op == "constant" and derivative.value == 1:
         return ex.as_number(partial)
     return partial * derivative
+
+
+def _forwards(node: Node, argument: Node, partial: Expression | Condition | int, derivative: Expression,
+              singular: set[int]) -> Expression:
+    """The product of a partial derivative and that of its argument. Zero where that is, though the partial one may be
+    infinite there; for exponentials, where they are, as exp(n log(x)) at x = 0."""
+    if derivative.op == "constant" and derivative.value == 0:
+        return derivative
+    if isinstance(partial, ex.Expression) and derivative.op != "constant":
+        if node.op in _singular:  # so that it has the right derivatives in its turn
+            partial = ex.where(ex.is_finite(partial) | (derivative != 0.0), partial, 0.0)
+        elif node.op in ("exp", "exp2") and id(argument) in singular:
+            return ex.where(partial == 0.0, 0.0, partial * derivative)
+    return _times(partial, derivative)
+
+
+def _with_singular(order: Sequence[Node]) -> set[int]:
+    """Nodes whose derivatives may be infinite."""
+    found: set[int] = set()
+    for node in order:
+        if node.op in _singular or any(id(a) in found for a in node.args):
+            found.add(id(node))
+    return found
 
 
 def dependencies(roots: Sequence[Node], symbols: Sequence[Node]) -> list[list[int]]:
@@ -105,7 +139,9 @@ def derivatives(roots: Sequence[Node], symbols: Sequence[Node]) -> list[dict[int
     one = ex.constant(1.0)
     number = {id(s): i for i, s in enumerate(symbols)}
     found: dict[int, dict[int, Expression]] = {}
-    for node in ex.walk(roots):
+    order = ex.walk(roots)
+    singular = _with_singular(order)
+    for node in order:
         total: dict[int, Expression] = {}
         if id(node) in number:
             total[number[id(node)]] = one
@@ -117,7 +153,7 @@ def derivatives(roots: Sequence[Node], symbols: Sequence[Node]) -> list[dict[int
                 if partial is None:
                     continue
                 for i, derivative in found[id(argument)].items():
-                    term = _times(partial, derivative)
+                    term = _forwards(node, argument, partial, derivative, singular)
                     total[i] = total[i] + term if i in total else term
         found[id(node)] = total
     return [found[id(root)] for root in roots]
@@ -134,26 +170,55 @@ def transposed(roots: Sequence[Node], weights: Sequence[Expression],
     the roots, however many symbols there are: reverse mode. None where `derivatives` gives None."""
     depends = {id(s) for s in symbols}
     order = ex.walk(roots)
+    above_singular = _with_singular(order)
     for node in order:
         if node.type == ex.real and any(id(a) in depends for a in node.args):
             depends.add(id(node))
     by: dict[int, Expression] = {}  # the derivative of the sum by each node
+    # Nodes that only count where a condition holds, or within an exponential that may be zero, so that their derivative
+    # is zero where they may have no value; and those whose derivative may be infinite, as it comes by that of a square
+    # root. Products with what is zero are zero.
+    conditional: set[int] = set()
+    singular: set[int] = set()
 
-    def add(node: Node, term: Expression) -> None:
-        if id(node) in depends:
-            by[id(node)] = by[id(node)] + term if id(node) in by else term
+    def add(node: Node, term: Expression, is_conditional: bool, is_singular: bool) -> None:
+        if id(node) not in depends:
+            return
+        if is_singular:
+            singular.add(id(node))
+        if id(node) in by:
+            by[id(node)] = by[id(node)] + term
+            if not is_conditional:
+                conditional.discard(id(node))
+            return
+        by[id(node)] = term
+        if is_conditional:
+            conditional.add(id(node))
 
     for root, weight in zip(roots, weights):
-        add(root, weight)
+        add(root, weight, False, False)
     for node in reversed(order):
         if id(node) not in by or not node.args:
             continue
         rule = _cheap_rule(node.op)
         if rule is None:
             return None
+        weight = by[id(node)]
         for partial, argument in zip(rule(node, *node.args), node.args):
-            if partial is not None and id(argument) in depends:
-                add(argument, _times(partial, by[id(node)]))
+            if partial is None or id(argument) not in depends:
+                continue
+            is_conditional, is_singular = id(node) in conditional, id(node) in singular
+            term = _times(partial, weight)
+            if isinstance(partial, ex.Condition):
+                is_conditional = True
+            elif isinstance(partial, ex.Node) and partial.op != "constant":
+                if is_conditional or node.op in _singular:
+                    term = ex.where(weight == 0.0, 0.0, term)
+                if is_singular:
+                    term = ex.where(partial == 0.0, 0.0, term)
+                is_singular = is_singular or node.op in _singular
+                is_conditional = is_conditional or node.op in ("exp", "exp2") and id(argument) in above_singular
+            add(argument, term, is_conditional, is_singular)
     return [by.get(id(s), ex.constant(0.0)) for s in symbols]
 
 
@@ -162,14 +227,16 @@ def directional(roots: Sequence[Node], symbols: Sequence[Node],
     """The derivatives of the roots where each symbol moves by its component of a direction. None where `derivatives`
     gives None."""
     moves: dict[int, Expression] = {id(s): d for s, d in zip(symbols, direction)}
-    for node in ex.walk(roots):
+    order = ex.walk(roots)
+    singular = _with_singular(order)
+    for node in order:
         if node.type != ex.real or not any(id(a) in moves for a in node.args):
             continue
         rule = _cheap_rule(node.op)
         if rule is None:
             return None
-        terms = [_times(partial, moves[id(a)]) for partial, a in zip(rule(node, *node.args), node.args)
-                 if partial is not None and id(a) in moves]
+        terms = [_forwards(node, a, partial, moves[id(a)], singular)
+                 for partial, a in zip(rule(node, *node.args), node.args) if partial is not None and id(a) in moves]
         for term in terms:
             moves[id(node)] = moves[id(node)] + term if id(node) in moves else term
     return [moves.get(id(root), ex.constant(0.0)) for root in roots]

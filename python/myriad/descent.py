@@ -25,6 +25,7 @@ class Descent:
     `pinned` gives, one for each start, which keep their values."""
 
     def __init__(self, problem: Objective, varied: Array, tolerance: float, pinned: Array | None = None) -> None:
+        problem.check_derivatives()
         self.problem, self.tolerance = problem, tolerance
         self.least, self.most = (np.tile(logarithms(problem.free, end), (len(varied), 1)) for end in problem.bounds)
         self.varied = np.clip(varied, self.least, self.most)

@@ -6,6 +6,7 @@ from __future__ import annotations
 import difflib
 import os
 import sys
+import threading
 import types
 from collections.abc import Collection, Iterable
 
@@ -26,8 +27,14 @@ class UnknownOption(Error, TypeError):
     """A call names an option that does not exist."""
 
 
+#: In a thread that the package has started, the line of the user's call, if it has set one.
+caller = threading.local()
+
+
 def users_line() -> tuple[str, int] | None:
     """File and line of the innermost caller outside this package, as (file, line), or None."""
+    if (line := getattr(caller, "line", None)) is not None:
+        return line
     frame: types.FrameType | None = sys._getframe(1)
     while frame is not None and frame.f_code.co_filename.startswith(_here):
         frame = frame.f_back

@@ -788,8 +788,12 @@ def text(node: Node) -> str:
             return f"{n.value[0].name}[{n.value[1]}]"
         return f"({n.value[0].name} @ vector)[{n.value[1]}]" if n.op == "dot" else None
 
-    if len(walk([node])) > 200:
-        return f"({node.op} of {len(walk([node]))} operations)"
+    order = walk([node])
+    length: dict[int, int] = {}  # of the text, in operations; what is used twice is written twice
+    for one in order:
+        length[id(one)] = min(1 + sum(length[id(a)] for a in one.args), 201)
+    if length[id(node)] > 200:
+        return f"({node.op} of {len(order)} operations)"
     written = write(node, leaf, lambda n, arguments: f"{_called.get(n.op, n.op)}({', '.join(arguments)})",
                     lambda *_: None, lambda n: _as_in_python.get(n.op))
     written = written.replace("&&", "and").replace("||", "or").replace("!(", "not (")

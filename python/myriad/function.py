@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import kinds
+from . import kinds, state_jumps
 from .adjoint import Adjoint
 from .components import Components, by_component, unknown
 from .device import is_on_gpu
@@ -124,6 +124,10 @@ class Batched:
         return solve(self.model, sweep, start={**self._start, **{name: given[name] for name in self._initial}},
                      sensitivities=self.by if sensitivities else None, **options)
 
+    def check_derivatives(self) -> None:
+        """Refuses derivatives of a model that jumps where they leave that out."""
+        state_jumps.refuse(self.model, "derivative")
+
     def _plain_options(self) -> dict[str, Any]:
         """The options of a call without sensitivities."""
         return {key: self._tolerances_of_states(value) if key in ("rtol", "atol") else value
@@ -163,6 +167,7 @@ class Batched:
     def with_jacobian(self, values: Values) -> tuple[Array, Array]:
         """The results, and their derivatives by the values, along one more axis behind those of the results. What has
         no derivative is NaN."""
+        self.check_derivatives()
         rows, batch = self._rows(values)
         run = self.run(rows, sensitivities=True)
         slopes = self._stacked((run.sensitivity[one, k] for k in self.by for one in self.of), run)
@@ -180,7 +185,10 @@ class Batched:
             results, jacobian = self.with_jacobian(rows)
             given = weights(results) if callable(weights) else weights
             flat = np.broadcast_to(np.asarray(given, float), (*batch, *self.shape)).reshape(len(rows), -1)
-            gradient = (flat[:, None, :] @ jacobian.reshape(len(rows), -1, len(self.by)))[:, 0]
+            # a weight of zero counts nothing, though the derivative may not exist
+            counts_not = (flat == 0) & np.isfinite(results.reshape(flat.shape))
+            known = np.where(counts_not[:, :, None], 0.0, jacobian.reshape(len(rows), -1, len(self.by)))
+            gradient = (flat[:, None, :] @ known)[:, 0]
         else:
             if not callable(weights):
                 flat = np.broadcast_to(np.asarray(weights, float), (*batch, *self.shape)).reshape(-1, *self.shape)

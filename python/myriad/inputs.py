@@ -92,6 +92,16 @@ def real(value: Any, name: str) -> float:
     raise Error(f"{name} is {value!r}: give a number")
 
 
+def text(value: object, name: str) -> str:
+    """A text as the core takes it, of characters alone: half of a pair of UTF-16 is none."""
+    made = str(value)
+    try:
+        made.encode()
+    except UnicodeEncodeError as why:
+        raise Error(f"{name} has {made[why.start]!a}, which is no character: give a text in Unicode") from None
+    return made
+
+
 def path_text(path: Path) -> str:
     """A path as the core takes it: a text of characters, so that messages can name it."""
     try:

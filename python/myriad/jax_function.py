@@ -4,6 +4,7 @@ there, and a callback to the host otherwise."""
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +16,48 @@ from .statuses import first_failure
 
 if TYPE_CHECKING:
     from .function import Batched
+
+
+@functools.cache
+def _product() -> Any:
+    """JAX's primitive for the product of a Jacobian and a vector, in which zero times what does not exist is zero, and
+    so is it in the product with the transposed Jacobian, which reverse mode makes of it."""
+    import jax
+    import jax.numpy as jnp
+    from jax.extend.core import Primitive
+    from jax.interpreters import ad, batching, mlir
+
+    def primitive(name: str, axis: int) -> Any:
+        def product(jacobian: Any, vector: Any) -> Any:
+            vector = jnp.expand_dims(vector, -3 - axis)
+            return jnp.where(vector == 0, 0, jacobian * vector).sum(axis)
+
+        def shape_of(*given: Any) -> Any:
+            made = jax.eval_shape(product, *(jax.ShapeDtypeStruct(one.shape, one.dtype) for one in given))
+            return jax.core.ShapedArray(made.shape, made.dtype)
+
+        def batched(given: Any, axes: Any) -> Any:
+            size = next(one.shape[place] for one, place in zip(given, axes) if place is not None)
+            return made.bind(*(jnp.broadcast_to(one, (size, *one.shape)) if place is None else
+                               jnp.moveaxis(one, place, 0) for one, place in zip(given, axes))), 0
+
+        made = Primitive(name)
+        made.def_impl(jax.jit(product))
+        made.def_abstract_eval(shape_of)
+        mlir.register_lowering(made, mlir.lower_fun(product, multiple_results=False))
+        batching.primitive_batchers[made] = batched
+        return made
+
+    forwards, backwards = primitive("myriad_product", -1), primitive("myriad_transposed_product", -2)
+
+    def transposed_to(other: Any) -> Callable[..., Any]:
+        def rule(weights: Any, jacobian: Any, vector: Any) -> Any:
+            return None, ad.Zero(vector.aval) if type(weights) is ad.Zero else other.bind(jacobian, weights)
+
+        return rule
+
+    ad.primitive_transposes[forwards], ad.primitive_transposes[backwards] = map(transposed_to, (backwards, forwards))
+    return forwards
 
 
 def jax_function(function: Batched, platform: str = "cuda") -> Callable[[Any], Any]:
@@ -80,9 +123,10 @@ def jax_function(function: Batched, platform: str = "cuda") -> Callable[[Any], A
         return values(theta)[0]
 
     def pushed_forward(primals: Any, tangents: Any) -> Any:
+        function.check_derivatives()
         found, jacobian = values_and_jacobian(primals[0])
-        along = tangents[0].reshape(*tangents[0].shape[:-1], *[1] * len(function.shape), n_by)
-        return found, (jacobian * along).sum(-1)
+        flat = jacobian.reshape(*tangents[0].shape[:-1], -1, n_by)
+        return found, _product().bind(flat, tangents[0]).reshape(found.shape)
 
     rule: Any
     if function.adjoint is None:

@@ -153,22 +153,10 @@ def register(platform: str) -> None:
     by = compiler.compiler()
     header = pathlib.Path(jax.ffi.include_dir(), "xla", "ffi", "api", "c_api.h").read_text()
     source = header + _handler
-    library = cache.obtain(by.made_from(source), lambda folder: _compile(by, source, folder), _load).loaded
+    library = cache.functions(by, source, lambda folder: by.compile(source, folder))  # its headers are not prepared
     library.myriad_set_solver(_solve)
     jax.ffi.register_ffi_target(_target, jax.ffi.pycapsule(library.myriad_solve), platform=platform)
     _registered[platform] = library
-
-
-def _compile(by: _core.Compiler, source: str, folder: str) -> None:
-    """Without the library's headers, which are not prepared for it."""
-    by.compile(source, folder)
-
-
-def _load(path: str) -> ctypes.CDLL:
-    try:
-        return ctypes.CDLL(path)
-    except OSError as error:
-        raise Error(f"the compiled handler of XLA's calls cannot be loaded: {error}") from None
 
 
 def call(function: Batched, with_jacobian: bool, rows: Any) -> Sequence[Any]:

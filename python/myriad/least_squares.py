@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import kinds
+from . import kinds, state_jumps
 from .adjoint import Adjoint
 from .components import Components, by_component, unknown
 from .core_options import per_state
@@ -62,6 +62,14 @@ class Objective:
         """The lower and the upper bounds of the free components."""
         return np.array([f.least for f in self.free]), np.array([f.most for f in self.free])
 
+    def check_derivatives(self) -> None:
+        """Refuses derivatives of a model that jumps where they leave that out."""
+        state_jumps.refuse(self._differentiated(), "gradient of the loss")
+
+    def _differentiated(self) -> AnyModel:
+        """The model whose derivatives the gradient is made of."""
+        raise NotImplementedError
+
     def run(self, values: Values, sensitivities: bool = True) -> Run:
         """The run of one set of values, or of several in rows."""
         raise NotImplementedError
@@ -93,6 +101,7 @@ class Objective:
 
     def gradient(self, values: Values) -> Array:
         """The derivatives of the loss by the free components."""
+        self.check_derivatives()
         return np.einsum("...r,...rp->...p", self._once(values, 1), self._once(values, 2))
 
 
@@ -136,6 +145,9 @@ class LeastSquares(Objective):
         self._read(data, sigma)
         self._adjoint = self._make_adjoint() if adjoint else None
         self._last_gradient: tuple[Any, ...] = ()
+
+    def _differentiated(self) -> AnyModel:
+        return self.model
 
     def _make_adjoint(self) -> Adjoint:
         return Adjoint(self.model, self.names, list(self.data), self._sweep, self._start,
@@ -255,6 +267,7 @@ class LeastSquares(Objective):
 
     def jacobian(self, values: Values) -> Array:
         """The derivatives of the residuals by the free components, one row for each residual."""
+        self.check_derivatives()
         return self._once(values, 2)
 
     def _by_adjoint(self, adjoint: Adjoint, values: Values) -> tuple[Any, Array]:

@@ -127,7 +127,9 @@ def stop(time: Written | Sequence[Written], *, every: Written | None = None, cou
     """Exact times of a model: steps end there, no root is sought, and `do` are the assignments made. `time` is one
     time, or several that do not decrease; with `every` the first of `count` times at equal intervals (default: without
     an end), as in stop(0, every=24, count=doses, do={gut: gut + dose}). Times are numbers or expressions of parameters,
-    shared values and accessories. They act at both ends of a phase too, but once where one phase goes on from another.
+    shared values and accessories, and may change: a stop acts at the time that an accessory has, and again where an
+    action sets another one that is not yet over. They act at both ends of a phase too, but once where one phase goes on
+    from another.
     """
     several = list(time) if isinstance(time, (list, tuple, np.ndarray)) else [time]
     if not several or every is not None and len(several) > 1 or every is None and count is not None:
@@ -136,6 +138,18 @@ def stop(time: Written | Sequence[Written], *, every: Written | None = None, cou
     if name is not None:
         sym.check_name(name, "a stop")
     return Stop(several, every, count, name, {} if do is None else do)
+
+
+def _one_by_one(several: Stop) -> list[Stop]:
+    """A stop for each of several times that actions may set, as those need not stay in order."""
+    if len(several.times) == 1 or not any(s.value[0] in kinds.accessories for s in symbols_of(several.times)):
+        return [several]
+    made = []
+    for k, time in enumerate(several.times):
+        one = copy.copy(several)
+        one.times, one.name = [time], several.name if k == 0 else f"{several.name}_{k + 1}"
+        made.append(one)
+    return made
 
 
 def model(equations: ByComponent | Callable[..., Any] | str, *, events: Event | Sequence[Event] = (),
@@ -190,6 +204,7 @@ class Model(kinds.ComponentNames):
         self.line = users_line()
         self.hidden: frozenset[str] = frozenset()  # accessories that no user has named
         self.jumps_to_miss: list[str] = []  # where equations and events jump and no step ends
+        self.jumps_by_state: list[str] | None = None  # where the state makes the equations jump, once that is known
         self._source: str | None = None
         self._declared = self._declare(states, parameters, shared, accessories)
         self._names = self._declared  # what texts may name: later also what the equations do
@@ -404,7 +419,7 @@ class Model(kinds.ComponentNames):
                     raise Error(f"{name} stands in the time of {what}{at(given.line)}: times are made of parameters, "
                                 "shared values and accessories; make an event where a state decides")
             one.do = self._assignments(given.do, what, line=given.line)
-            made.append(one)
+            made += _one_by_one(one)
         return made
 
     def _triggers(self, triggers: Trigger | Sequence[Trigger], states: list[Node]) -> list[Trigger]:
@@ -530,28 +545,60 @@ class Model(kinds.ComponentNames):
         if has_mass_matrix:  # the slopes are others than the equations say
             changing |= set(self.equations)
 
-        def free(wanted: str) -> str:
-            return sym.free_name(wanted, [*self.component_names, *self._reserved, *([name] if name else [])])
+        self._as_given = copy.copy(self)
+        self._as_given.name, self._changing = name or "", changing
+        self._as_given.events = [copy.copy(one) for one in self.events]
+        self._as_given.stops = [copy.copy(one) for one in self.stops]
+        self._switch(None)
 
-        switches = self.switches = TimeSwitches(self.equations, [quantity for _, quantity in self.observed],
-                                                [e.function for e in self.events], changing, free)
+    def _switch(self, moves: Callable[[set[Any]], bool] | None) -> None:
+        """Makes jumps in time exact. `moves`: the symbols that jumps with stops of their own have times from."""
+        given = self._as_given
+        taken: list[str] = []
+
+        def free(wanted: str) -> str:
+            names = [*given.component_names, *self._reserved, *([given.name] if given.name else []), *taken]
+            taken.append(sym.free_name(wanted, names))
+            return taken[-1]
+
+        switches = self.switches = TimeSwitches(self.equations, [quantity for _, quantity in given.observed],
+                                                [e.function for e in given.events], self._changing, free, moves)
         self.jumps_to_miss = switches.unknown
-        if not switches.at_jump:
+        if not switches.switches:
             return
-        if "stop_time" in self.component_names:  # which a model with stops cannot have
+        if "stop_time" in given.component_names:  # which a model with stops cannot have
             self.jumps_to_miss = switches.jumps
             self.switches = TimeSwitches({}, [], [], [], free)  # none
             return
         self.rhs = list(switches.equations.values())
-        self.observed = [(short, quantity) for (short, _), quantity in zip(self.observed, switches.quantities)]
-        made = stop(switches.following, every=0, name=free("jump"), do=switches.at_jump)
-        self.stops += self._stops([made])
-        self.initialise = switches.continued(self.initialise, begins=True)
-        for one in (*self.events, *self.stops[:-1], *self.triggers):
-            if any(target in switches.needed for target, _ in one.do):
+        self.observed = [(short, quantity) for (short, _), quantity in zip(given.observed, switches.quantities)]
+        self.initialise = switches.continued(given.initialise, begins=True)
+        for one in (*self.events, *self.stops, *self.triggers):
+            if not switches.needed.isdisjoint(target for target, _ in one.do):
                 one.do = switches.continued(one.do)
-        self.hidden |= {switches.following.value[1], switches.between.value[1]}
+        self.stops = [*self.stops, *self._stops([
+            stop(one.following, every=0, name=free("jump"), do=one.at_jump) for one in switches.switches])]
+        self.hidden |= {target.value[1] for target in switches.at_start}
         self._collect(list(self.equations))
+
+    @property
+    def quantities_as_given(self) -> list[tuple[str, Expression]]:
+        """The quantities of summaries before jumps in time were made exact."""
+        return self._as_given.observed
+
+    def with_jumps_apart(self, moves: Callable[[set[Any]], bool]) -> Model:
+        """The model in which jumps at times that depend on certain symbols have stops of their own, so that each
+        contributes the derivative of its own time; the model itself if no jump depends on them."""
+        if not self.switches.may_move(moves):
+            return self
+        made = copy.copy(self)
+        made.__dict__.pop("_prepared", None)
+        made._source = None
+        made.hidden = self.hidden - {target.value[1] for target in self.switches.at_start}
+        made.events = [copy.copy(one) for one in self._as_given.events]
+        made.stops = [copy.copy(one) for one in self._as_given.stops]
+        made._switch(moves)
+        return made
 
     def _collect(self, targets: list[Node]) -> None:
         """The components, in the order in which the equations, events, accessories and hooks first name them."""
@@ -655,7 +702,7 @@ class Model(kinds.ComponentNames):
                         raise Error(f"event_count('{name}') in {what}{at(self.line)} names no event: there are "
                                     f"{', '.join(e.name for e in self.events) or 'none'}")
         for what, members, present in (
-                ("stops", "stop stop_time", len(self.stop_names) - (1 if self.switches.at_jump else 0)),
+                ("stops", "stop stop_time", len(self.stop_names) - len(self.switches.switches)),
                 ("triggers", "trigger condition after_trigger initial_value persistent queue", self.triggers)):
             taken = next((n for n in members.split() if n in kind_of), None)
             if taken is not None and present:

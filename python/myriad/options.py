@@ -115,9 +115,10 @@ class Options:
         to t_end (in [0, inf), in the model's unit of time)
     carry_on_step: a phase starts with `step`, or with the last step size (`carry_on`)
     events: how events are detected: one entry for each; none: defaults for all
-    sub_samples: points per step at which event functions are evaluated (in [1, 10000])
+    sub_samples: points per step at which event functions are evaluated, and with two or more also where they turn: what
+        crosses zero and comes back within a step is found (in [1, 10000])
     accumulation_limit: repeated actions of one event without leaving its surface, after which the instance ends as
-        `event_accumulation` (in [1, 1000000000])
+        `event_accumulation` (in [1, 65535])
     record: what to keep at the end of each phase
     samples: dense output, in C++ of a method `dense<method>`
     advice: whether to check after the call, if it took many steps, for stiffness (with some evaluations of `rhs` on the

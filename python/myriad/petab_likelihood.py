@@ -23,7 +23,7 @@ from .solve import solve
 from .symbols import time
 
 if TYPE_CHECKING:
-    from .hints import Array, Values
+    from .hints import AnyModel, Array, Values
     from .run import Run
 
 __all__ = ["PetabLikelihood"]
@@ -180,6 +180,9 @@ class PetabLikelihood(Objective):
             found |= {f"{c}_by_{name}": tolerance / size for c, tolerance in of_states.items()}
         return found
 
+    def _differentiated(self) -> AnyModel:
+        return self._model
+
     def run(self, values: Values, sensitivities: bool = True) -> Run:
         """The run of one set of values, or of several in rows: an instance for each condition of each set, those of one
         set one after the other, with derivatives by the parameters of the model."""
@@ -255,6 +258,7 @@ class PetabLikelihood(Objective):
     def jacobian(self, values: Values) -> Array:
         """The derivatives of the residuals by the free components, one row for each residual."""
         self._refuse_residuals()
+        self.check_derivatives()
         return self._once(values, 2)
 
     def _refuse_residuals(self) -> None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import symbols as sym
 from .components import Components, name_of, unknown
+from .deep import deeply
 from .errors import Error, users_line
 from .expression import Node, symbols_of
 from .folding import constant, is_constant, value_of
@@ -50,7 +51,8 @@ def read_sbml(source: Path | str, *, parameters: Names | None = None, reduce: bo
     swept = None
     if parameters is not None:
         swept = [name_of(n) for n in ([parameters] if isinstance(parameters, Node) else sym.names(parameters))]
-    return SbmlModel(Semantics(library(), document, model, swept), name or model.getId() or "model", reduce)
+    return deeply(lambda: SbmlModel(Semantics(library(), document, model, swept), name or model.getId() or "model",
+                                    reduce))
 
 
 def read_antimony(source: Path | str, *, parameters: Names | None = None, reduce: bool = False,

@@ -54,59 +54,98 @@ def complements(comparison: Any) -> list[Any]:
     return [compare(reverse, a, b), compare(_mirrored.get(reverse, reverse), b, a)]
 
 
-def comparisons_alone(condition: Any, where: str, is_still: Callable[[Any], bool], as_it_is: bool = True) -> Any:
+def comparisons_alone(condition: Any, where: str, is_still: Callable[[Any], bool]) -> Any:
     """A condition of comparisons, `and` and `or`, without `not`. A comparison by != that fails for an instant alone is
     refused."""
-    if condition.op == "truth":
-        return condition if as_it_is else opposite(condition)
-    if condition.op == "not":
-        return comparisons_alone(condition.args[0], where, is_still, not as_it_is)
-    if condition.op in ("and", "or"):
-        parts = [comparisons_alone(a, where, is_still, as_it_is) for a in condition.args]
-        return both(*parts) if (condition.op == "and") is as_it_is else either(*parts)
-    if condition.op in _reverse:
-        for i, side in enumerate(condition.args):
-            if side.op == "select":  # a piecewise compared: the comparison of the piece that is chosen
-                chosen, a, b = side.args
-                pieces = [compare(condition.op, *(piece if j == i else other for j, other in enumerate(condition.args)))
-                          for piece in (a, b)]
-                return comparisons_alone(choose(chosen, *pieces), where, is_still, as_it_is)
-        wanted = condition if as_it_is else compare(_reverse[condition.op], *condition.args)
-        if wanted.op != "not_equal" or not is_for_an_instant(wanted, is_still):
-            return wanted
-    raise Refused(f"{where}: its trigger is no combination of ==, <, <=, > and >=")
+    made: dict[tuple[Any, bool], Any] = {}  # as formulas share their parts
+
+    def alone(condition: Any, as_it_is: bool) -> Any:
+        key = condition, as_it_is
+        if key not in made:
+            made[key] = written(condition, as_it_is)
+        return made[key]
+
+    def written(condition: Any, as_it_is: bool) -> Any:
+        if condition.op == "truth":
+            return condition if as_it_is else opposite(condition)
+        if condition.op == "not":
+            return alone(condition.args[0], not as_it_is)
+        if condition.op in ("and", "or"):
+            parts = [alone(a, as_it_is) for a in condition.args]
+            return both(*parts) if (condition.op == "and") is as_it_is else either(*parts)
+        if condition.op in _reverse:
+            for i, side in enumerate(condition.args):
+                if side.op == "select":  # a piecewise compared: the comparison of the piece that is chosen
+                    chosen, a, b = side.args
+                    pieces = [compare(condition.op, *(piece if j == i else other
+                                                      for j, other in enumerate(condition.args))) for piece in (a, b)]
+                    return alone(choose(chosen, *pieces), as_it_is)
+            wanted = condition if as_it_is else compare(_reverse[condition.op], *condition.args)
+            if wanted.op != "not_equal" or not is_for_an_instant(wanted, is_still):
+                return wanted
+        raise Refused(f"{where}: its trigger is no combination of ==, <, <=, > and >=")
+
+    return alone(condition, True)
+
+
+def _connected(condition: Any) -> list[Any]:
+    """The parts of a condition that `and` and `or` connect, and what these make of them; each once, and before what it
+    is a part of."""
+    order, seen, waiting = [], set(), [(condition, False)]
+    while waiting:
+        part, parts_are_there = waiting.pop()
+        if parts_are_there:
+            order.append(part)
+        elif part not in seen:
+            seen.add(part)
+            waiting.append((part, True))
+            if part.op in ("and", "or"):
+                waiting += [(a, False) for a in reversed(part.args)]
+    return order
 
 
 def comparisons_of(condition: Any) -> list[Any]:
     """The comparisons that a condition is made of, each once."""
-    if condition.op in ("and", "or"):
-        return list(dict.fromkeys(c for a in condition.args for c in comparisons_of(a)))
-    return [condition] if condition.op in _reverse else []
+    return [part for part in _connected(condition) if part.op in _reverse]
 
 
 def with_values(condition: Any, values: dict[Any, Any]) -> Any:
     """A condition with others in the place of some of its comparisons."""
-    if condition.op in ("and", "or"):
-        return (both if condition.op == "and" else either)(*(with_values(a, values) for a in condition.args))
-    return values.get(condition, condition)
+    made: dict[Any, Any] = {}
+    for part in _connected(condition):
+        if part.op in ("and", "or"):
+            made[part] = (both if part.op == "and" else either)(*(made[a] for a in part.args))
+        else:
+            made[part] = values.get(part, part)
+    return made[condition]
 
 
 def function_of(condition: Any, is_still: Callable[[Any], bool]) -> Any:
     """A function that is positive where a condition holds and negative where it does not."""
-    if condition.op in ("and", "or"):
-        sides = tuple(function_of(a, is_still) for a in condition.args)
-        return ex.make("min" if condition.op == "and" else "max", sides)
-    a, b = condition.args if condition.op.startswith("greater") else condition.args[::-1]
-    if condition.op in ("equal", "not_equal") or not is_still(condition) and _only_jumps(condition, is_still):
-        return choose(condition, constant(math.inf), constant(-math.inf))  # as a - b may be zero for a while
+    made: dict[Any, Any] = {}
+    for part in _connected(condition):
+        if part.op in ("and", "or"):
+            made[part] = ex.make("min" if part.op == "and" else "max", tuple(made[a] for a in part.args))
+        else:
+            made[part] = _function_of_one(part, is_still)
+    return made[condition]
+
+
+def _function_of_one(comparison: Any, is_still: Callable[[Any], bool]) -> Any:
+    a, b = comparison.args if comparison.op.startswith("greater") else comparison.args[::-1]
+    if comparison.op in ("equal", "not_equal") or not is_still(comparison) and _only_jumps(comparison, is_still):
+        return choose(comparison, constant(math.inf), constant(-math.inf))  # as a - b may be zero for a while
     return subtract(a, b)
 
 
 def _only_jumps(comparison: Any, is_still: Callable[[Any], bool]) -> bool:
     """Whether the sides of a comparison are constant between jumps, as floor(time) is."""
-    waiting = list(comparison.args)
+    waiting, seen = list(comparison.args), set()
     while waiting:
         part = waiting.pop()
+        if part in seen:
+            continue
+        seen.add(part)
         if part.op in ("floor", "rint") or part.type == ex.condition or is_still(part):
             continue
         if part.op == "symbol":

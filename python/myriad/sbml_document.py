@@ -57,9 +57,30 @@ def _check(libsbml: Any, document: Any) -> None:
         for category in (libsbml.LIBSBML_CAT_UNITS_CONSISTENCY, libsbml.LIBSBML_CAT_MODELING_PRACTICE,
                          libsbml.LIBSBML_CAT_SBO_CONSISTENCY):
             document.setConsistencyChecks(category, False)
+        # which writes functions out at every call: checks of what they make would not end
+        if document.getModel() is not None and _written_out(libsbml, document.getModel()) > 10_000:
+            document.setConsistencyChecks(libsbml.LIBSBML_CAT_GENERAL_CONSISTENCY, False)
         document.checkConsistency()
     for error in _errors(libsbml, document)[:1]:
         raise Refused(f"line {error.getLine()} is no valid SBML: {' '.join(error.getMessage().split())}")
+
+
+def _written_out(libsbml: Any, model: Any) -> int:
+    """The most calls that a function of the model is, with those of the functions that it calls."""
+    most, calls = 0, dict[str, int]()
+    for i in range(model.getNumFunctionDefinitions()):  # which call those above them alone
+        definition, count = model.getFunctionDefinition(i), 1
+        waiting = [definition.getBody()]
+        while waiting:
+            node = waiting.pop()
+            if node is None:
+                continue
+            if node.getType() == libsbml.AST_FUNCTION:
+                count += calls.get(node.getName(), 0)
+            waiting += [node.getChild(j) for j in range(node.getNumChildren())]
+        calls[definition.getId()] = count
+        most = max(most, count)
+    return most
 
 
 def _errors(libsbml: Any, document: Any) -> list[Any]:

@@ -22,8 +22,8 @@ from .model import Event, event
 from .sbml_conditions import (any_of, comparisons_alone, comparisons_of, complements, false, function_of,
                               functions_of, is_for_an_instant, never, true, with_values)
 from .sbml_document import named
-from .sbml_instant import (Instant, Occurrence, Pending, Slot, at_once, interfere, margin, mark, never_due,
-                           next_random)
+from .sbml_instant import (Instant, Occurrence, Pending, Slot, at_once, interfere, mark, never_due, next_random,
+                           rounding)
 from .sbml_math import Refused
 from .sbml_semantics import Quantity, Semantics
 
@@ -212,7 +212,7 @@ class Events:
         instant = Instant(self, self._now)
         instant.truth = {one: one.trigger for one in self.all}
         for one, slot in slots:
-            is_due = compare("less_equal", slot.due, sym.time + margin())
+            is_due = compare("less_equal", slot.due, sym.time + rounding())
             values = {n: slot.values.get(n, v) for n, v in one.given.items()} if one.from_trigger else None
             instant.pending.append(Pending(one, is_due, values))
             instant.values[slot.due] = choose(is_due, constant(never_due), slot.due)

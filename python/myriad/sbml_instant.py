@@ -15,6 +15,7 @@ from . import expression as ex, symbols as sym
 from .expression import symbols_of
 from .folding import add, both, choose, compare, constant, either, is_constant, opposite, value_of
 from .sbml_conditions import all_of, any_of, comparisons_of, false, function_of, never, substituted, true, with_values
+from .time_switches import _unit_roundoff
 
 if TYPE_CHECKING:
     from .sbml_events import Events
@@ -75,6 +76,11 @@ def margin() -> Any:
     """The difference of times that count as one instant: rounding errors of the time and of where it began, whatever
     the model's unit of time is."""
     return 1e-10 * ex.abs(sym.time) + 1e-13 * ex.abs(sym.t_begin)
+
+
+def rounding() -> Any:
+    """The difference of times that differ by their rounding alone."""
+    return 32.0 * _unit_roundoff() * (ex.abs(sym.time) + ex.abs(sym.t_begin))
 
 
 def at_once(earlier: Any) -> Any:

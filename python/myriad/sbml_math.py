@@ -95,13 +95,16 @@ class Translator:
         self.functions, self.lookup, self.rate_of, self.time = functions, lookup, rate_of, time
         self.rate_of_expression: Callable[[Any, str], Any] = lambda expression, where: constant(0.0)
         self.factorials: Table | None = None
+        self._calls: dict[Any, tuple[Any, Any]] = {}  # values by function and arguments, which may be called often
+        self._calling: list[str] = []
 
     def __call__(self, formula: Any, where: str, bound: Mapping[str, Any] | None = None) -> Any:
         """The expression of a formula; `bound` has ids with a meaning of their own there."""
+        outer, self._calls = self._calls, {}
         try:
             return self._node(formula, where, bound or {})
-        except RecursionError:
-            raise Refused(f"{where} is nested too deeply: write it in parts") from None
+        finally:
+            self._calls = outer
 
     def _node(self, node: Any, where: str, bound: Mapping[str, Any]) -> Any:
         kind = self.functions.names.get(node.getType(), "UNKNOWN")
@@ -189,7 +192,17 @@ class Translator:
             raise Refused(f"the function `{name}`, whose definition has no formula, in {where}")
         values = {definition.getArgument(i).getName(): self._node(child, where, bound)
                   for i, child in enumerate(children)}
-        return self._node(definition.getBody(), where, values)
+        if name in self._calling:
+            raise Refused(f"the function `{name}`, which calls itself, in {where}")
+        # of functions that call others twice, each is written out once for the same arguments, which are kept alive
+        key = (name, *map(id, values.values()))
+        if key not in self._calls:
+            self._calling.append(name)
+            try:
+                self._calls[key] = self._node(definition.getBody(), where, values), values
+            finally:
+                self._calling.pop()
+        return self._calls[key][0]
 
 
 def _functions_arguments(kind: str) -> int:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import folding
+from . import folding, state_jumps
 from .components import Components, by_component, unknown
 from .core_options import per_state
 from .derivatives import derivatives
@@ -17,6 +17,7 @@ from .errors import Error, at, users_line
 from .expression import Node, symbols_of
 from .extended import Extended
 from .inputs import real
+from .model import Model
 from .statuses import status_names
 from .symbols import symbol as symbol_of
 from .symbols import t_begin, t_end, time
@@ -35,6 +36,18 @@ _domain = {t_begin: "t_begin", t_end: "t_end"}  # the ends of the time domain, b
 def _name_of(components: Components, key: Component) -> str:
     """The name of what derivatives are by."""
     return _domain[key] if isinstance(key, Node) and key in _domain else components.component(key)
+
+
+def _with_jumps_apart(model: Model, names: Sequence[str]) -> Model:
+    """A traced model in which each jump in time has the derivative of its own time. What is not given may follow from
+    the components, and actions may change states and accessories by them."""
+    own = Components(model)
+
+    def moves(needed: set[Node]) -> bool:
+        return any(s.value[0] in ("state", "accessory") or s.value[1] in names or own.follows(s.value[1], names, ())
+                   for s in needed)
+
+    return model.with_jumps_apart(moves)
 
 
 def with_sensitivities(model: AnyModel, by: SomeComponents, control: bool = True) -> WithSensitivities:
@@ -77,6 +90,9 @@ class WithSensitivities(Extended):
             if getattr(model, what, False):
                 raise Error(f"the hooks of the model assign {what[7:].replace('_', ' ')}{line}, and what they assign "
                             "has no sensitivities: use an accessory, or end phases by an event")
+        if isinstance(model, Model):
+            model = _with_jumps_apart(model, names)
+        own = Components(model)
         self.by = names
         self.control = control  #: whether errors of derivatives take part in choosing the steps
         self.n_original = len(own.states)
@@ -229,7 +245,8 @@ class Sensitivities(Mapping[Any, Any]):
                 inner = 0.0 if place == "sample" else at_end[f"time_by_{k}"]
             else:
                 inner = float(name == k)
-            total = total + run._output_at(place, partial) * inner
+            slope = run._output_at(place, partial)
+            total = total + np.where(np.equal(inner, 0.0), 0.0, slope * inner)  # zero, even if the slope is infinite
         return total if place else self._defined(total)
 
     def __iter__(self) -> Iterator[str]:
@@ -241,6 +258,11 @@ class Sensitivities(Mapping[Any, Any]):
 
     def __repr__(self) -> str:
         return f"<sensitivities of {', '.join(self)} by {', '.join(self.by)}>"
+
+
+def note_on(model: AnyModel) -> str | None:
+    """What to know of a model with sensitivities."""
+    return state_jumps.note(model.model) if isinstance(model, WithSensitivities) else None
 
 
 def note(run: Run) -> str | None:

@@ -25,7 +25,7 @@ from .options import Options, SolveArguments
 from .per_phase import prepared
 from .progress import ProgressDisplay
 from .run import Interrupted, Run
-from .sensitivities import WithSensitivities, note, with_sensitivities
+from .sensitivities import WithSensitivities, note, note_on, with_sensitivities
 from .statements import with_event_names
 
 if TYPE_CHECKING:
@@ -311,7 +311,9 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
             if scale.ndim and len(scale) != count:
                 raise Error(f"'tolerance_scale' has {len(scale)} values for {count} instances: give one for each")
             ensemble.array("tolerance_scale")[...] = scale
-        if make_consistent:
+        # kernels see to it after `initialise`, without which equations are not what they will be
+        after_hook = getattr(model, "mass_matrix", None) is not None and bool(getattr(model, "initialise", ()))
+        if make_consistent and not after_hook:
             if any(isinstance(array, DeviceInput) for array in given.values()):
                 raise Error("make_consistent=True changes arrays on the host, and some are on a GPU: copy them to the "
                             "host")
@@ -322,7 +324,7 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
         raise with_event_names(error, components.event_names) from None
     finally:
         display.close()
-    notes = [one for one in (no_gpu, time_switches.note(model, given_options)) if one]
+    notes = [one for one in (no_gpu, time_switches.note(model, given_options), note_on(model)) if one]
     run = Run(components, ensemble, report, kernel, sweep, _inputs(components, given), recorded, sampled,
               clock.perf_counter() - begin, core_options.record.from_phase, notes)
     if isinstance(model, WithSensitivities) and (undefined := note(run)) is not None:

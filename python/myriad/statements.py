@@ -20,6 +20,7 @@ _cures = {
     "make_consistent": "let myriad.solve find them by make_consistent=True",
     "scale_tolerances": "give control=\"tolerance_per_instance\"",
     "smaller_parts": "integrate the sweep in smaller parts", "fewer_instances": "integrate the sweep in {parts}",
+    "allow_arithmetic": "give arithmetic=\"any\"",
     "smaller_chunk": "make chunk= smaller", "new_folder": "give another store= and a smaller chunk="}
 # Where values are given that the core calls by these names; others are in the sweep.
 _given_in = {"t_begin": "time=", "t_end": "time=", "state": "start=", "tolerance_scale": "tolerance_scale="}

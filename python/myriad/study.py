@@ -23,7 +23,7 @@ from .core_options import finish_options, make_options, options_of, takes_option
 from .errors import Error
 from .expression import Node
 from .grid import Sweep
-from .inputs import by_name, numbers, only, path_text, real, whole
+from .inputs import by_name, numbers, only, path_text, real, text, whole
 from .kinds import recorded as recorded_kinds
 from .methods import default, fixed_step, method_type
 from .options import Options, StudyArguments
@@ -31,6 +31,7 @@ from .per_phase import prepared
 from .progress import ProgressDisplay
 from .reduce import Reduction
 from .run import Interrupted
+from .sensitivities import note_on
 from .solve import device_names, ends_of, kernel_for, refuse_missing
 from .statements import in_words, with_event_names
 from .study_result import StudyResult
@@ -90,7 +91,8 @@ class Study:
         core_options, recorded, sampled = make_options(components, 0, options)
         finish_options(core_options, options, components, len(components.states), len(components.events))
         core_options.invalid_instances = "mark"
-        self._interpreted, self._note = interpreted, time_switches.note(model, options)
+        self._interpreted = interpreted
+        self._notes = [one for one in (time_switches.note(model, options), note_on(model)) if one]
         self._kernels: dict[str, Kernel] = {}
         self._kernel_for = lambda device: kernel_for(device, model, components, chosen, control, samples is not None,
                                                      precision, self._interpreted)
@@ -114,13 +116,15 @@ class Study:
                                 "[myriad.reduce.mean(\"x_end\")]")
                 made.reduce(reduction.core())
             for key, unit in by_name(units, "units", "units={x: \"m\"}").items():
-                made.unit("t" if key is time_symbol else self._full_name(key), unit)
+                name = "t" if key is time_symbol else self._full_name(key)
+                made.unit(name, text(unit, f"the unit of '{name}'"))
             if title:
-                made.title(title)
+                made.title(text(title, "the title"))
             values = np.array(list(components.tables.values()), float)
             made.note("model", hashlib.sha256(model.source()[0].encode() + values.tobytes()).hexdigest()[:32])
-            for key, text in by_name(notes, "notes", "notes={\"who\": \"...\"}").items():
-                made.note(f"user.{key}", str(text))
+            for key, value in by_name(notes, "notes", "notes={\"who\": \"...\"}").items():
+                key = text(key, "the key of a note")
+                made.note(f"user.{key}", text(value, f"the note '{key}'"))
         except Error as error:
             raise with_event_names(error, components.event_names) from None
 
@@ -294,7 +298,8 @@ class Study:
         executor   any executor of `concurrent.futures`, as ProcessPoolExecutor or one of Dask, loky, mpi4py and
                    Parsl: its workers compute chunks, and send their values here, where they are kept
         check      what is looked at of a store that exists: "sizes" of files, or "checksums", for which all is read
-        expiry     seconds after which chunks of a process on another machine that gives no sign of life are taken over
+        expiry     seconds after which chunks of a process on another machine that gives no sign of life are taken over;
+                   infinity: never
         arithmetic "same": a store that another instruction set, compiler or library began is refused, since results
                    differ in their last digits; "any": it is gone on with, and `warnings` says so
         progress   True for a bar, or a function of the numbers of instances done and of all
@@ -318,13 +323,16 @@ class Study:
         try:
             if not folder and self._has_store:  # from an earlier run
                 self._build(*self._given[:2], **self._given[2])
-            self._core.set_store(folder, real(expiry, "expiry"), check == "checksums", arithmetic == "any")
+            seconds = real(expiry, "expiry")
+            if not seconds >= 1e-3:
+                raise Error(f"expiry is {expiry!r}: give seconds, 0.001 or more, or infinity for never")
+            self._core.set_store(folder, min(seconds, 1e9), check == "checksums", arithmetic == "any")
             self._has_store = bool(folder)
             if executor is not None:
                 return _ExecutedRun(self, executor, devices, chunk, folder or None, show).run()
             self._use(devices, chunk)
             (results, facts), failure = self._core.run(show)
-            result = self._result(results, facts, folder or None, [n for n in (no_gpu, self._note) if n])
+            result = self._result(results, facts, folder or None, [*([no_gpu] if no_gpu else []), *self._notes])
             if failure is not None:
                 if isinstance(failure, KeyboardInterrupt):
                     raise Interrupted(result) from None

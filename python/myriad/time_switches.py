@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 _comparisons = "less", "less_equal", "greater", "greater_equal", "equal", "not_equal"
 _remainders = "fmod", "floor_mod"
 _whole = "floor", "rint", "floor_divide", *_remainders
+_kinked = "abs", "min", "max"
 _waves = {"sin": (math.pi, ex.asin), "cos": (math.pi, ex.acos), "sinpi": (1.0, ex.asin), "cospi": (1.0, ex.acos)}
 
 _one = constant(1.0)
@@ -55,25 +56,50 @@ def _unit_roundoff() -> Any:
     return choose(compare("equal", one * (1.0 + 1e-10), one), constant(2.0**-24), constant(2.0**-53))
 
 
+class Switch:
+    """The jumps at some times, one after the other: what jumps is computed for the time of the accessory `between`,
+    which is between the last jump and the next. A step has to end at the time of the accessory `following`, where
+    assignments `at_jump` are made; those of `at_start` are made at the start of a phase. The times follow from what is
+    `needed`."""
+
+    def __init__(self, first: Any, direction: Any, in_events: bool, free_name: Callable[[str], str]) -> None:
+        self.following, self.between = (sym.accessory(free_name(name)) for name in ("next_jump", "between_jumps"))
+        self.needed = set(symbols_of([first]))
+        # after the last jump: some time, as an infinite one makes NaN of k * time where k is zero
+        later = sym.time + direction * (1.0 + ex.abs(sym.time))
+        is_finite = compare("less", ex.abs(first), constant(math.inf))
+        to_middle = 0.5 * (sym.time + choose(is_finite, first, later))
+        self.at_start = self.at_jump = {self.following: to_middle if in_events else first, self.between: to_middle}
+        if in_events:
+            # functions of events are seen in the middle, and once more shortly before the jump, as they are until then
+            ahead = 64.0 * _unit_roundoff() * (ex.abs(first) + ex.abs(sym.t_begin))
+            is_near = both(is_finite, compare("less_equal", direction * (first - sym.time), 2.0 * ahead))
+            before = choose(is_finite, first - direction * ahead, first)
+            is_middle = compare("equal", self.following, self.between)
+            self.at_jump = {self.following: choose(is_near, first, choose(is_middle, before, to_middle)),
+                            self.between: choose(is_middle, self.between, to_middle)}
+
+
 class TimeSwitches:
     """Makes the jumps in time of `equations`, by state, and of the `quantities` of summaries exact. If there are any,
-    both are rewritten: what jumps is computed for the time `between`, an accessory that is between the last jump and
-    the next. A step has to end at the time of the accessory `following`, where assignments `at_jump` are made; those of
-    `at_start` are made at the start of a phase. If nothing jumps, there are none. Jumps whose times have no formula are
-    `unknown`, and stay as they are.
+    both are rewritten, with the accessories of `switches`, each of which has a stop. Jumps whose times have no formula
+    are `unknown`, and stay as they are.
+
+    One switch takes all jumps at their first time. Where derivatives are wanted, a jump contributes the derivative of
+    its own time, also if others are at the same time: with `moves`, which says of symbols whether times that follow
+    from them have derivatives, each such outermost operation that jumps has a switch of its own, and what jumps within
+    it one more in its place.
 
     Jumps may also depend on what changes at actions alone, which then find the next jump anew: `continued`; not on
     what is `changing`. If `functions` of events jump or come back, steps also end halfway between jumps, where the
     signs of these functions are seen. `free_name` makes names of components."""
 
     def __init__(self, equations: Mapping[Any, Any], quantities: Sequence[Any], functions: Sequence[Any],
-                 changing: Collection[Any], free_name: Callable[[str], str]) -> None:
+                 changing: Collection[Any], free_name: Callable[[str], str],
+                 moves: Callable[[set[Any]], bool] | None = None) -> None:
         self.equations, self.quantities = dict(equations), list(quantities)
-        self.following: Any = None
-        self.between: Any = None
-        self.at_start: dict[Any, Any] = {}
-        self.at_jump: dict[Any, Any] = {}
-        self.needed: set[Any] = set()  #: what the times of jumps follow from
+        self.switches: list[Switch] = []
+        self.located: set[Any] = set()  #: what jumps at times at which steps end
         self.unknown: list[str] = []
         self.jumps: list[str] = []  #: all of them, known or not
         self._changing = changing
@@ -81,8 +107,8 @@ class TimeSwitches:
                        is_constant(rate) and value_of(rate) == 0}
         self._clocks = {s: rate for s, rate in equations.items() if s not in changing and  # which measure time
                         s not in self._still and self._is_still(rate)}
-        states, jumping = list(equations), rebuilt([*equations.values(), *quantities], self._without_copysign)
-        functions = rebuilt(list(functions), self._without_copysign)
+        states, jumping = list(equations), rebuilt([*equations.values(), *quantities], self.without_copysign)
+        functions = rebuilt(list(functions), self.without_copysign)
         self._forms: dict[Any, Form | None] = {}
         self._times: dict[Any, list[Time] | None] = {}
         self._kinks: list[Any] = []
@@ -98,47 +124,93 @@ class TimeSwitches:
                 found[crossing] = self._times_of(crossing)
                 in_events.add(crossing)
         found |= {kink: self._times_of(kink) for kink in self._kinks}
-        times = [(t, ahead) for t, ahead in dict.fromkeys(one for several in found.values() for one in several or ())
-                 if not is_constant(t) or math.isfinite(value_of(t))]
-        if not times:
-            return
-        following, middle = (sym.accessory(free_name(name)) for name in ("next_jump", "between_jumps"))
-        self.following, self.between = following, middle
         between: dict[Any, Any] = {}
-        for node, several in found.items():  # arguments come before what is of them
-            if several is not None:
-                between[node] = self._between(node, middle, between)
-        jumping = rebuilt(jumping, lambda node: node, between)
-        self.equations, self.quantities = dict(zip(states, jumping)), jumping[len(states):]
-        first = self._first(times)
-        self.needed = set(symbols_of([first]))
-        # after the last jump: some time, as an infinite one makes NaN of k * time where k is zero
-        later = sym.time + self._direction * (1.0 + ex.abs(sym.time))
-        is_finite = compare("less", ex.abs(first), constant(math.inf))
-        to_middle = 0.5 * (sym.time + choose(is_finite, first, later))
-        self.at_start = self.at_jump = {following: to_middle if in_events else first, middle: to_middle}
-        if in_events:
-            # functions of events are seen in the middle, and once more shortly before the jump, as they are until then
-            ahead = 64.0 * _unit_roundoff() * (ex.abs(first) + ex.abs(sym.t_begin))
-            is_near = both(is_finite, compare("less_equal", self._direction * (first - sym.time), 2.0 * ahead))
-            before = choose(is_finite, first - self._direction * ahead, first)
-            is_middle = compare("equal", following, middle)
-            self.at_jump = {following: choose(is_near, first, choose(is_middle, before, to_middle)),
-                            middle: choose(is_middle, middle, to_middle)}
+        for nodes, whole in self._apart(found, jumping, moves):
+            if not (times := self._all_times(found, nodes)):
+                continue
+            switch = Switch(self._first(times), self._direction, not in_events.isdisjoint(nodes), free_name)
+            self.switches.append(switch)
+            inside: dict[Any, Any] = {}
+            for node in nodes:  # arguments come before what is of them
+                if found[node] is not None:
+                    inside[node] = self._between(node, switch.between, inside)
+            between |= {whole: inside[whole]} if whole is not None else inside
+        self.located = {node for node, several in found.items() if several is not None}
+        if self.switches:
+            jumping = rebuilt(jumping, lambda node: node, between)
+            self.equations, self.quantities = dict(zip(states, jumping)), jumping[len(states):]
+
+    @property
+    def at_start(self) -> dict[Any, Any]:
+        """The assignments at the start of a phase."""
+        return {target: value for one in self.switches for target, value in one.at_start.items()}
+
+    @property
+    def needed(self) -> set[Any]:
+        """What the times of jumps follow from."""
+        return {symbol for one in self.switches for symbol in one.needed}
+
+    def may_move(self, moves: Callable[[set[Any]], bool]) -> bool:
+        """Whether the times of jumps have derivatives."""
+        return any(moves(one.needed) for one in self.switches)
+
+    @staticmethod
+    def _all_times(found: dict[Any, list[Time] | None], nodes: Collection[Any]) -> list[Time]:
+        """The times of some jumps."""
+        return [(t, ahead) for t, ahead in dict.fromkeys(one for node in nodes for one in found[node] or ())
+                if not is_constant(t) or math.isfinite(value_of(t))]
+
+    def _apart(self, found: dict[Any, list[Time] | None], jumping: list[Any],
+               moves: Callable[[set[Any]], bool] | None) -> list[tuple[list[Any], Any]]:
+        """What jumps, in sets of their own where their times have derivatives, each with the operation that it is for,
+        and all others together, for none."""
+        outermost = [] if moves is None else self._outermost(found, jumping)
+        apart = []
+        for node in outermost:
+            inside = set(walk([node]))
+            inside |= {_is_less(one) for one in inside if one.op in _kinked}
+            nodes = [one for one in found if one in inside]
+            times = self._all_times(found, nodes)
+            if times and moves is not None and moves(set(symbols_of([self._first(times)]))):
+                apart.append((nodes, node))
+        if not apart:
+            return [(list(found), None)]
+        alone = {node for _, node in apart}
+        seen = set(walk([node for node in outermost if node not in alone]))
+        seen |= {_is_less(one) for one in seen if one.op in _kinked}
+        in_some = {node for nodes, _ in apart for node in nodes}
+        others = [node for node in found if node in seen or node not in in_some]
+        return [*apart, (others, None)]
+
+    @staticmethod
+    def _outermost(found: dict[Any, list[Time] | None], roots: list[Any]) -> list[Any]:
+        """What jumps in some expressions and is in nothing else that does."""
+        seen: set[Any] = set()
+        waiting, outermost = list(roots), []
+        while waiting:
+            if (node := waiting.pop()) in seen:
+                continue
+            seen.add(node)
+            if found.get(node) is not None:
+                outermost.append(node)
+            else:
+                waiting += node.args
+        return [node for node in found if node in set(outermost)]  # in their order
 
     def continued(self, assignments: Assignments, begins: bool = False) -> Assignments:
-        """Assignments of a hook or action, and then the next jump after them. `begins`: they begin a phase, at a time
-        that they may assign."""
+        """Assignments of a hook or action, and then the next jumps after them, where they are others. `begins`: they
+        begin a phase, at a time that they may assign."""
         known = dict(assignments)
         if begins and sym.t_begin in known:
             known[sym.time] = known[sym.t_begin]
-        values = rebuilt(list(self.at_start.values()), lambda node: node, known)
-        return [*assignments, *zip(self.at_start, values)]
+        further = {target: value for one in self.switches if begins or not one.needed.isdisjoint(known)
+                   for target, value in one.at_start.items()}
+        return [*assignments, *zip(further, rebuilt(list(further.values()), lambda node: node, known))]
 
     def _may_jump(self, node: Any) -> bool:
         return node.op in (*_comparisons, *_whole) and node.value != ex.continuous and self._is_of_time(node)
 
-    def _without_copysign(self, node: Any) -> Any:
+    def without_copysign(self, node: Any) -> Any:
         """The sign of a function of time as a choice."""
         if node.op != "copysign" or not self._is_of_time(node.args[1]):
             return node
@@ -272,7 +344,7 @@ class TimeSwitches:
             return {sym.time: rate, _one: node - rate * sym.time}
         if not self._has_time(node):
             return {_one: node}
-        if node.op in ("abs", "min", "max"):
+        if node.op in _kinked:
             return self._form(self._with_kink(node))
         forms: list[Form] = []
         for argument in node.args:
@@ -309,11 +381,15 @@ class TimeSwitches:
     def _with_kink(self, node: Any) -> Any:
         """An absolute value, a minimum or a maximum by a comparison."""
         a, b = node.args if len(node.args) == 2 else (node.args[0], constant(0.0))
-        is_less = compare("less", a, b)
-        self._kinks.append(is_less)
+        self._kinks.append(is_less := _is_less(node))
         if node.op == "abs":
             return choose(is_less, ex.make("negate", (a,)), a)
         return choose(is_less, *((a, b) if node.op == "min" else (b, a)))
+
+
+def _is_less(node: Any) -> Any:
+    """Whether the first argument of an absolute value, a minimum or a maximum is less than the second."""
+    return compare("less", *(node.args if len(node.args) == 2 else (node.args[0], constant(0.0))))
 
 
 def _decisive(node: Any) -> Any:

@@ -75,7 +75,9 @@ def torch_function(function: Batched) -> Callable[[Any], Any]:
             jacobian, = ctx.saved_tensors
             extra = jacobian.ndim - 1 - len(function.shape)
             flat = of_values.reshape(*of_values.shape[:extra], 1, -1)
-            return (flat @ jacobian.reshape(*jacobian.shape[:extra], -1, len(function.by))).squeeze(-2)
+            # a weight of zero counts nothing, though the derivative may not exist
+            known = jacobian.reshape(*jacobian.shape[:extra], -1, len(function.by)).masked_fill(flat.mT == 0, 0.0)
+            return (flat @ known).squeeze(-2)
 
         @staticmethod
         def jvp(ctx: Any, tangent: Any) -> Any:
@@ -83,7 +85,7 @@ def torch_function(function: Batched) -> Callable[[Any], Any]:
             batch = tangent.shape[:-1]
             along = tangent.reshape(*batch, *[1] * len(function.shape), -1)
             # Forward derivatives of the derivatives are wanted silently: they must be no numbers.
-            return (jacobian * along).sum(-1), torch.full_like(jacobian, torch.nan)
+            return (jacobian * along).masked_fill(along == 0, 0.0).sum(-1), torch.full_like(jacobian, torch.nan)
 
         @staticmethod
         def vmap(info: Any, in_dims: Any, theta: Any) -> Any:
@@ -151,6 +153,7 @@ def torch_function(function: Batched) -> Callable[[Any], Any]:
                         f"{', '.join(function.by)}, {len(function.by)} in number")
         moves = torch.autograd.forward_ad.unpack_dual(theta).tangent is not None if theta.is_floating_point() else False
         if moves or theta.requires_grad and torch.is_grad_enabled():
+            function.check_derivatives()
             return Solved.apply(theta)[0] if function.adjoint is None else ByAdjoint.apply(theta)
         return Values.apply(theta if theta.is_floating_point() else theta.double())
 

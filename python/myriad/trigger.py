@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["trigger", "Trigger"]
 
 _rooms = 1, 4  #: how many actions of a trigger may wait: without a delay, and with one
+_most_waiting = 1000  #: actions of a model: each has a place in every instance, at which kernels look one by one
 
 
 class Trigger:
@@ -58,6 +59,9 @@ def trigger(condition: Written, *, do: ByComponent | None = None, delay: Written
     if room is not None and (isinstance(room, bool) or not isinstance(room, (int, np.integer)) or room < 1):
         raise Error(f"the room of a trigger is {room!r}{line}: give the number of its actions that may wait at one "
                     "time, as in room=10")
+    if room is not None and room > _most_waiting:
+        raise Error(f"the room of a trigger is {room}{line} (at most {_most_waiting}, as every instance has a place "
+                    "for each action): give the number of its actions that may wait at one time")
     for flag, value in (("initial_value", initial_value), ("persistent", persistent),
                         ("values_from_trigger_time", values_from_trigger_time)):
         if not isinstance(value, (bool, np.bool_)):
@@ -79,6 +83,10 @@ class Queue:
             raise Error(f"tie_seed is {seed!r}{at(users_line())}: give a model with triggers a whole number from 0 on")
         self.seed = -1 if seed is None else int(seed)  #: of the order of actions of one priority; -1: as triggered
         self.capacity, self.values = sum(t.room for t in triggers), max(len(t.values) for t in triggers)
+        if self.capacity > _most_waiting:
+            raise Error(f"the triggers have room for {self.capacity} actions{at(triggers[0].line)} (at most "
+                        f"{_most_waiting} in a model, as every instance has a place for each): give them a smaller "
+                        "room=")
         places = range(1, self.capacity + 1)
         self.accessories = [f"due_time_{i}" for i in places]
         self.accessories += [f"due_value_{v + 1}_{i}" for v in range(self.values) for i in places]

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import functools
 import os
 import re
 from collections.abc import Iterator
@@ -13,6 +14,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import numpy as np
 
 from . import expression as ex, symbols as sym
+from .deep import deeply
 from .errors import Error, users_line
 from .expression import evaluate, symbols_of
 from .folding import compare, constant, is_constant, value_of
@@ -39,7 +41,7 @@ def read_xpp(source: Path | str, *, name: str | None = None) -> XppModel:
     numbers and Markov processes, algebraic equations, boundary conditions, networks of `special`.
     """
     text, folder, called = _text_of(source)
-    return XppModel(_File(text, folder), name or called)
+    return deeply(lambda: XppModel(_File(text, folder), name or called))
 
 
 def _text_of(source: Path | str) -> tuple[str, FilePath, str]:
@@ -151,11 +153,12 @@ class _File:
                         yield from (_Line(g.number, self._indexed(g, g.text, j)) for g in group)
                     group = None
                     continue
-                found = _range.search(line.text)
-                if not found:
+                found = _range.match(line.text[1:].lstrip())
+                if found:
+                    group, ends = [], range(int(found[1]), int(found[2]) + 1)
+                elif re.match(r"%\s*\[", line.text):
                     line.refuse("a group begins with its range, as in %[1..3]")
-                group, ends = [], range(int(found[1]), int(found[2]) + 1)
-                continue
+                continue  # else a remark
             if group is not None:
                 group.append(line)
             elif line.text.startswith("@"):
@@ -347,8 +350,11 @@ class XppModel(Model):
         names.functions = {n: (arguments, body) for n, (_, arguments, body) in parts.functions.items()}
         for line, table, what in parts.tables:
             names.tables[table] = _table(file, line, table, what, names, self._component(table))
-        for n, (line, text) in (*parts.derived.items(), *parts.quantities.items()):
-            names.values[n] = _in_line(line, text, names)
+        # each when it is needed, as a file may define them below what uses them
+        names.later = {n: functools.partial(_in_line, *given, names)
+                       for n, given in (*parts.derived.items(), *parts.quantities.items())}
+        for n in (*parts.derived, *parts.quantities):
+            names.find(n)
         equations = {states[n]: _in_line(line, text, names) for n, (line, text) in parts.equations.items()}
         events = [self._event(one, number, names, states, parameters) for number, one in enumerate(parts.events, 1)]
         name = self._component(re.sub("_+", "_", re.sub(r"\W", "_", name.lower())).strip("_") or "model")

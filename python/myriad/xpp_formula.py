@@ -63,19 +63,32 @@ class Names:
         self.functions: dict[str, tuple[list[str], str]] = {}
         self.tables: dict[str, Callable[[Any], Any]] = {}
         self.series: list[list[str]] = []
+        self.later: dict[str, Callable[[], Any]] = {}  # expressions that are made when they are looked for
+        self._under_way: list[str] = []
+
+    def find(self, name: str) -> Any:
+        """The expression of a name, or None."""
+        if name in self._under_way:
+            raise NoFormula(f"`{name}` depends on itself")
+        if name in self.later:
+            self._under_way.append(name)
+            self.values[name] = self.later[name]()
+            self._under_way.pop()
+            del self.later[name]
+        return self.values.get(name)
 
 
 def formula(text: str, names: Names, bound: Mapping[str, Any] | None = None) -> Any:
     """The expression of a formula in small letters, a number; `bound` has the arguments of a function."""
-    try:
-        return number(_Reader(text, names, bound or {}).whole())
-    except RecursionError:
-        raise NoFormula("it is nested too deeply, or a function calls itself") from None
+    return number(_Reader(text, names, bound or {}, {}, ()).whole())
 
 
 class _Reader:
-    def __init__(self, text: str, names: Names, bound: Mapping[str, Any]) -> None:
-        self.text, self.names, self.bound = text, names, bound
+    """`calls` has the values of functions by name and arguments, `calling` the functions that are under way."""
+
+    def __init__(self, text: str, names: Names, bound: Mapping[str, Any], calls: dict[Any, tuple[Any, Any]],
+                 calling: tuple[str, ...]) -> None:
+        self.text, self.names, self.bound, self.calls, self.calling = text, names, bound, calls, calling
         self.tokens, place = [], 0
         while text[place:].strip():
             found = _tokens.match(text, place)
@@ -139,13 +152,13 @@ class _Reader:
             return self.sum()
         if token in self.bound:
             return self.bound[token]
-        if token in self.names.values:
-            return self.names.values[token]
+        if (found := self.names.find(token)) is not None:
+            return found
         if self.next() in ("(", "{", "["):
             return self.call(token)
         if token == "":
             raise NoFormula("it ends where a value is expected")
-        raise NoFormula(f"`{token}` is unknown here; a quantity has to be defined above what uses it")
+        raise NoFormula(f"`{token}` is unknown here")
 
     def within(self) -> Any:
         self.expect("(")
@@ -180,7 +193,14 @@ class _Reader:
             wanted, body = self.names.functions[name]
             given = self.arguments()
             self.check(name, given, len(wanted))
-            return formula(body, self.names, dict(zip(wanted, given)))
+            if name in self.calling:
+                raise NoFormula(f"the function `{name}` calls itself")
+            # of functions that call others twice, each is written out once for the same arguments, which are kept alive
+            key = (name, *map(id, given))
+            if key not in self.calls:
+                reader = _Reader(body, self.names, dict(zip(wanted, given)), self.calls, (*self.calling, name))
+                self.calls[key] = number(reader.whole()), given
+            return self.calls[key][0]
         if name not in _functions:
             raise NoFormula(f"the function `{name}` is unknown")
         count, function = _functions[name]
@@ -211,9 +231,7 @@ class _Reader:
         place = series.index(name) + by
         if not 0 <= place < len(series):
             raise NoFormula(f"nothing is {by} after `{name}`")
-        if series[place] not in self.names.values:
-            raise NoFormula(f"`{series[place]}` has to be defined above what uses it")
-        return self.names.values[series[place]]
+        return self.names.find(series[place])
 
     def sum(self) -> Any:
         """sum(low, high) of (expression of i')."""

@@ -2,6 +2,8 @@
 // What the Python package has of src/compile.
 #include "compile.hpp"
 
+#include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +14,7 @@
 
 #include "compile/compiled_cache.hpp"
 #include "compile/compiler.hpp"
+#include "compile/loaded_library.hpp"
 
 namespace nb = nanobind;
 
@@ -49,14 +52,16 @@ public:
     /// Compiles a source to `model.so` in a folder; returns whether the headers were prepared.
     bool compile(const std::string& source, const std::string& folder) const {
         const std::string file = folder + "/model.cpp", made = folder + "/model.so", output = folder + "/said.txt";
-        write_file(file, source);
+        write_file(file, source + digest_line(made_from(source)));
         const compiled_cache cache(check_signals);
         const std::vector<std::string> prepared = header().arguments(cache);
         const auto run = [&](const std::vector<std::string>& headers) {
             std::vector<std::string> words = by_.command;
             for (const auto& part : {flags(), headers, {"-shared", file, "-o", made}})
                 words.insert(words.end(), part.begin(), part.end());
-            return child_process(words, output).wait(check_signals) == 0;
+            std::filesystem::remove(made);
+            const int status = child_process(words, output).wait(check_signals);
+            return status == 0 || (status == child_process::unknown && std::filesystem::exists(made));
         };
         if (run(prepared)) return !prepared.empty();
         // They may be damaged, and messages are better without.
@@ -81,6 +86,17 @@ private:
     std::string include_;
 };
 
+/// Calls a function of Python, whose `Error` is an `error`, which the cache may know what to do about.
+nb::object call(const nb::callable& function, const std::string& path) {
+    const nb::gil_scoped_acquire gil;
+    try {
+        return function(path);
+    } catch (nb::python_error& e) {
+        if (!e.matches(nb::module_::import_("myriad.errors").attr("Error"))) throw;
+        throw error(nb::cast<std::string>(nb::str(e.value())));
+    }
+}
+
 /// What `load(path)` makes of what `make(folder)` writes as `model.so`, whether it was in the cache, why the cache is
 /// not used, and whether that is because others could have put something there.
 nb::object obtain(const nb::bytes& made_from, const nb::callable& make, const nb::callable& load) {
@@ -92,20 +108,8 @@ nb::object obtain(const nb::bytes& made_from, const nb::callable& make, const nb
         const nb::gil_scoped_release released;
         compiled_cache cache(check_signals);
         was_there = cache.obtain(
-            text,
-            [&](const std::filesystem::path& folder) {
-                const nb::gil_scoped_acquire gil;
-                make(folder.string());
-            },
-            [&](const std::string& path) {
-                const nb::gil_scoped_acquire gil;
-                try {
-                    loaded = load(path);
-                } catch (nb::python_error& e) {
-                    if (!e.matches(nb::module_::import_("myriad.errors").attr("Error"))) throw;
-                    throw error(nb::cast<std::string>(nb::str(e.value())));
-                }
-            });
+            text, [&](const std::filesystem::path& folder) { call(make, folder.string()); },
+            [&](const std::string& path) { loaded = call(load, path); });
         objection = cache.objection();
         is_distrusted = cache.is_distrusted();
     }
@@ -139,6 +143,9 @@ void bind_compile(nb::module_& m) {
     m.def("refuse_without_compiler", [] { throw no_compiler("or `pip install ziglang`, "); });
     m.def("first_error", &first_error);
     m.def("obtain", &obtain);
+    m.def("load_library", [](const std::string& path, const nb::bytes& made_from) {
+        return reinterpret_cast<std::uintptr_t>(loaded_library(path, {made_from.c_str(), made_from.size()}).keep());
+    });
     m.def("cache_folder", [] { return compiled_cache::user_folder().string(); });
     m.def("clear_cache", [] { return compiled_cache().clear(); });
 }

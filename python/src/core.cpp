@@ -424,6 +424,7 @@ NB_MODULE(_core, m) {
         if (PyDict_Merge(m.attr("__dict__").ptr(), known, 0) != 0) throw nb::python_error();
         return;
     }
+    nb::set_leak_warnings(false);  // what other libraries still have at the end of the process is theirs
     nb::register_exception_translator(
         [](const std::exception_ptr& thrown, void*) {
             try {
@@ -541,7 +542,10 @@ NB_MODULE(_core, m) {
                                {false_at_first, lapsing, {queue[0], queue[1], queue[2], queue[3]}, due, seed});
     });
     nb::class_<library>(m, "Library")
-        .def(nb::init<const std::string&>())
+        .def("__init__",
+             [](library* self, const std::string& path, const nb::bytes& made_from) {
+                 new (self) library(path, {made_from.c_str(), made_from.size()});
+             })
         .def("give_model", &library::give_model, "tape"_a, "method"_a, "mass_matrix"_a)
         .def(nb::init<const std::string&, const std::string&, int, int, bool, std::shared_ptr<interpreted>>())
         .def("__init__", [](library* self, const nb::bytes& image,

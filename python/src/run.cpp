@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include <dlfcn.h>
-
+#include "compile/loaded_library.hpp"
 #include "myriad/host/checks/consistency.hpp"
 #include "myriad/host/report/matrix_note.hpp"
 #include "myriad/host/report/stability.hpp"
@@ -21,15 +20,15 @@
 
 namespace myriad::python {
 
-library::library(const std::string& path) {
-    void* const handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-    require(handle != nullptr, "the compiled model could not be loaded: ", handle != nullptr ? "" : dlerror());
-    const auto function = reinterpret_cast<kernel_library_function>(dlsym(handle, kernel_library_symbol));
-    require(function != nullptr, path, " holds no compiled model");
+library::library(const std::string& path, std::string_view made_from) {
+    compiling::loaded_library loaded(path, made_from);
+    const auto function = reinterpret_cast<kernel_library_function>(loaded.find(kernel_library_symbol));
+    require(function != nullptr, "the file of a compiled model holds none");
     cpu_ = *function();
-    require(cpu_.facts.interface_version == interface_version, path, " was compiled for another version of Myriad");
+    require(cpu_.facts.interface_version == interface_version, "the model was compiled for another version of Myriad");
     const auto set = static_cast<openmp::instruction_set>(cpu_.instruction_set);
     require(host::cpu_has(set), "the model was compiled for ", host::name_of(set), ", which this CPU lacks");
+    loaded.keep();
 }
 
 library::library(const std::string& method, const std::string& size, int shared, int shared_integers, bool may_stop,
@@ -152,7 +151,8 @@ void make_consistent(const library& kernel, ensemble<R>& instances) {
     const auto which = kernel.gpu() != nullptr ? device::parse("cuda") : device::parse("cpu");
     const host::called_model<R> model = called_for<R>(kernel, *instances.shape, which, {});
     require(model.functions.linearise != nullptr,
-            "make_consistent is for models with a mass matrix and without `initialise`: leave it out");
+            "make_consistent is for models with a mass matrix; where one has an `initialise`, its states are made "
+            "consistent after that: leave it out");
     if (model.enter_thread) model.enter_thread();
     host::project_initial_states(instances.data, model.functions);
 }

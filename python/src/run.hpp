@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "device_library.hpp"
@@ -26,8 +27,9 @@ namespace myriad::python {
 /// interpreter, or a program for GPUs.
 class library {
 public:
-    /// Throws `error` if the file is no kernel library of this version, or not for this CPU.
-    explicit library(const std::string& path);
+    /// Throws `error` if the file is no kernel library of this version, not for this CPU, or was made from something
+    /// else.
+    library(const std::string& path, std::string_view made_from);
     /// The interpreter of that size with a model of that many shared values; `may_stop`: its hooks may end phases.
     library(const std::string& method, const std::string& size, int shared, int shared_integers, bool may_stop,
             std::shared_ptr<const interpreted> model);

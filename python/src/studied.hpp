@@ -94,6 +94,10 @@ public:
         o.events.resize(static_cast<std::size_t>(shape.n_event));
         return o;
     }
+    detail::behaviour_function<R> behaviour_for(const device& where) const override {
+        if (where.which() != device::kind::cpu) return nullptr;
+        return *static_cast<const detail::behaviour_function<R>*>(kernel_for(where).kernel->cpu().behaviour);
+    }
     std::string compiler_for(const device& where) const override {
         return where.which() == device::kind::cpu ? kernel_for(where).kernel->cpu().compiler : "";
     }

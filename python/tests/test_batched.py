@@ -121,6 +121,30 @@ def test_jax_gets_no_second_derivatives(jax, position):
         jax.hessian(lambda theta: position.to_jax()(theta).sum())(sets[0])
 
 
+def test_a_weight_of_zero_counts_nothing_where_a_derivative_does_not_exist(position, monkeypatch):
+    slopes = np.ones((1, *position.shape, 2))
+    slopes[0, 1:] = np.nan
+    monkeypatch.setattr(position, "with_jacobian", lambda rows: (np.ones((1, *position.shape)), slopes))
+    weights = np.zeros(position.shape)
+    weights[0] = 2
+    np.testing.assert_array_equal(position.vjp(sets[0], weights)[1], [2, 2])
+    assert np.isnan(position.vjp(sets[0], weights + 1)[1]).all()
+
+
+def test_jax_lets_a_weight_of_zero_count_nothing(jax):
+    from myriad.jax_function import _product
+    jacobian = np.array([[2.0, np.nan], [0.0, 3.0]])
+
+    def product(vector):
+        return _product().bind(jacobian, vector)
+
+    along, weights = np.array([1.0, 0.0]), np.array([0.0, 1.0])
+    np.testing.assert_array_equal(jax.jit(product)(along), [2, 0])
+    transposed = jax.linear_transpose(product, along)
+    np.testing.assert_array_equal(transposed(weights)[0], [0, 3])
+    np.testing.assert_array_equal(jax.vmap(transposed)(np.eye(2))[0], [[2, np.nan], [0, 3]])
+
+
 def test_torch_has_the_gradients_of_the_closed_form(position, launches):
     torch = pytest.importorskip("torch")
     f = position.to_torch()

@@ -327,3 +327,183 @@ def test_compilers_are_told_apart_by_their_files(tmp_path, monkeypatch):
     assert compiler.find_compiler().identity != found.identity
     program.write_text("#!/bin/sh\necho 11\n")
     assert compiler.find_compiler() is None or compiler.find_compiler().kind == "zig"
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# What is loaded is what was asked for
+# ---------------------------------------------------------------------------------------------------------------------
+
+# Two models, each solved by its kernel, and what happens between them.
+TWO_MODELS = """
+import os, sys
+import myriad as my
+x, k = my.state("x"), my.parameter("k")
+
+def grown(sign, name):
+    model = my.model({x: sign * k * x}, name=name)
+    run = my.solve(model, {k: [1.0]}, start={x: 1.0}, time=(0, 1), device="cpu", interpreted=False)
+    return float(run["x"][0])
+
+print(round(grown(-1, "decay"), 4))
+BETWEEN
+print(round(grown(1, "growth"), 4))
+"""
+
+
+def _run_two_models(tmp_path, between, before="", wrap=(), **environment):
+    script = before + TWO_MODELS.replace("BETWEEN", between)
+    told = subprocess.run([*wrap, sys.executable, "-c", script], capture_output=True, text=True, check=False,
+                          cwd=tmp_path, env={**os.environ, "MYRIAD_CACHE_DIR": str(tmp_path / "cache"), **environment})
+    assert told.returncode == 0, told.stderr
+    return told.stdout.split()
+
+
+def test_a_second_model_is_its_own_after_a_program_has_closed_unknown_descriptors(tmp_path):
+    assert _run_two_models(tmp_path, "os.closerange(3, 1024)") == ["0.3679", "2.7183"]
+
+
+def _obtain_names(tmp_path, monkeypatch, count):
+    monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path))
+    names = []
+    for number in range(count):
+        obtain(f"t{number % 3}", _writer("made"), lambda path: names.append(path) or read(path))
+    return names
+
+
+def test_no_name_of_a_loaded_file_is_used_twice_and_no_descriptor_stays_open(tmp_path, monkeypatch):
+    before = len(os.listdir("/proc/self/fd"))
+    names = _obtain_names(tmp_path, monkeypatch, 50)
+    assert len(set(names)) == 50
+    assert len(os.listdir("/proc/self/fd")) == before
+
+
+def test_a_library_without_the_symbol_does_not_poison_the_process(tmp_path, monkeypatch):
+    monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path))
+    by = compiler.compiler()
+    source = compiler.source_of(OSCILLATOR, "oscillator", "myriad::tsitouras_5", "double")
+    made_from = by.made_from(source)
+
+    def make_empty(folder):
+        by.compile("int nothing;\n", folder)
+
+    for _ in range(3):
+        with pytest.raises(my.Error, match="another compiled model for the one that was asked for"):
+            cache.obtain(made_from, make_empty, lambda path: compiler._load(by, path, made_from))
+    found = cache.obtain(made_from, lambda folder: by.compile(source, folder),
+                         lambda path: compiler._load(by, path, made_from))
+    assert found.loaded.instruction_set
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# Where little is as usual
+# ---------------------------------------------------------------------------------------------------------------------
+
+def test_a_program_that_ignores_sigchld_compiles(tmp_path):
+    ignore = "import signal; signal.signal(signal.SIGCHLD, signal.SIG_IGN)\n"
+    assert _run_two_models(tmp_path, "", before=ignore) == ["0.3679", "2.7183"]
+
+
+def test_a_model_that_does_not_compile_is_refused_where_sigchld_is_ignored(tmp_path):
+    script = ("import signal; signal.signal(signal.SIGCHLD, signal.SIG_IGN)\n"
+              "from myriad import compiler\n"
+              "by = compiler.compiler()\n"
+              f"by.compile('int nothing = nobody;', {str(tmp_path)!r})")
+    told = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
+    assert told.returncode == 1 and "the model does not compile" in told.stderr
+
+
+def test_a_forked_child_keeps_no_lock(tmp_path, monkeypatch):
+    monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path))
+    child = 0
+
+    def make(workplace):
+        nonlocal child
+        child = os.fork()
+        if child == 0:
+            time.sleep(60)
+            os._exit(0)
+        raise my.Error("this process fails, and its child goes on")
+
+    try:
+        with pytest.raises(my.Error, match="its child goes on"):
+            obtain("u", make, read)
+        begin = time.monotonic()
+        assert obtain("u", _writer("made"), read).loaded == "made"
+        assert time.monotonic() - begin < 30
+    finally:
+        os.kill(child, signal.SIGKILL)
+        os.waitpid(child, 0)
+
+
+def test_a_forked_child_keeps_no_lock_of_a_process_that_was_killed(tmp_path, monkeypatch):
+    monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path))
+    script = ("import os, signal, time; from myriad import cache\n"
+              "def make(folder):\n"
+              "    if os.fork() == 0:\n"
+              "        print(os.getpid(), flush=True)\n"
+              "        os.closerange(1, 3)\n"
+              "        time.sleep(60)\n"
+              "        os._exit(0)\n"
+              "    time.sleep(0.1)\n"
+              "    os.kill(os.getpid(), signal.SIGKILL)\n"
+              "cache.obtain(b'v', make, print)")
+    child = int(subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False).stdout)
+    try:
+        begin = time.monotonic()
+        assert obtain("v", _writer("made"), read).loaded == "made"
+        assert time.monotonic() - begin < 30
+    finally:
+        os.kill(child, signal.SIGKILL)
+
+
+def _mounted(options, then):
+    """A command that has a file system in memory with such options on the folder `small`; None if it may not."""
+    mount = f"mkdir -p small && mount -t tmpfs -o {options} none small"
+    command = ("unshare", "-rm", "sh", "-c", f"{mount} && {then}", "sh")
+    may = subprocess.run(["unshare", "-rm", "sh", "-c", "mount -t tmpfs none /mnt"], capture_output=True, check=False)
+    return command if may.returncode == 0 else None
+
+
+def test_models_are_loaded_from_a_cache_on_a_disk_that_forbids_code(tmp_path):
+    wrap = _mounted("noexec", '"$@"')
+    if wrap is None:
+        pytest.skip("nothing can be mounted here")
+    assert _run_two_models(tmp_path, "", wrap=wrap, MYRIAD_CACHE_DIR=str(tmp_path / "small")) == ["0.3679", "2.7183"]
+
+
+def test_models_are_compiled_elsewhere_where_the_disk_of_the_cache_is_full(tmp_path):
+    for size in ("size=128k", "size=128k,nr_inodes=2"):
+        wrap = _mounted(size, '"$@"')
+        if wrap is None:
+            pytest.skip("nothing can be mounted here")
+        told = _run_two_models(tmp_path, "", wrap=wrap, MYRIAD_CACHE_DIR=str(tmp_path / "small"))
+        assert told == ["0.3679", "2.7183"]
+
+
+def test_without_a_home_and_a_temporary_folder_nothing_is_written_to_the_current_one(tmp_path):
+    script = ("from myriad import cache; import pathlib\n"
+              "make = lambda folder: pathlib.Path(folder, 'model.so').write_text('made')\n"
+              "print(cache.obtain(b'w', make, len).unusable)")
+    environment = {name: value for name, value in os.environ.items()
+                   if name not in ("HOME", "XDG_CACHE_HOME", "MYRIAD_CACHE_DIR")}
+    told = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False, cwd=tmp_path,
+                          env={**environment, "TMPDIR": str(tmp_path / "nowhere")})
+    assert told.returncode == 0 and "there is no folder for compiled models" in told.stdout, told.stderr
+    assert not list(tmp_path.iterdir())
+
+
+def test_messages_of_compilers_may_be_in_any_encoding(tmp_path, monkeypatch):
+    program = tmp_path / "g++"
+    program.write_text("#!/bin/sh\n[ \"$1\" = -dumpversion ] && echo 12 && exit\n"
+                       "printf 'f: error: \\344rger'\nexit 1\n")
+    program.chmod(0o700)
+    monkeypatch.setenv("MYRIAD_CXX", str(program))
+    with pytest.raises(my.Error, match="does not compile .*: \N{REPLACEMENT CHARACTER}rger"):
+        compiler.find_compiler().compile("int nothing;", str(tmp_path))
+
+
+def test_a_size_of_the_cache_that_is_no_number_of_bytes(tmp_path, monkeypatch):
+    monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path))
+    monkeypatch.setenv("MYRIAD_CACHE_SIZE", "1GB")
+    with pytest.raises(my.Error, match="MYRIAD_CACHE_SIZE is '1GB': give a number of bytes, such as 1073741824"):
+        obtain("y", _writer("x"), read)

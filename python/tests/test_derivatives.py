@@ -60,6 +60,53 @@ def test_reverse_and_directional_derivatives_are_sums_of_derivatives(name):
     np.testing.assert_allclose(along, matrix @ direction, rtol=1e-12, atol=1e-13)
 
 
+# idioms whose slope is infinite or has no value at some point, that point, and their derivatives by x, y and k there
+at_their_ends = {
+    "root of what is cut off": (my.sqrt(my.maximum(x - k, 0)), {x: 1.0, k: 2.0}, (0, 0, 0)),
+    "root at the cut": (my.sqrt(my.maximum(x - k, 0)), {x: 2.0, k: 2.0}, (0, 0, 0)),
+    "root where there is one": (my.where(x > k, my.sqrt(x - k) * y, 0.0), {x: 1.0, k: 2.0}, (0, 0, 0)),
+    "quotient where there is one": (my.where(x > 0, y / x, 0.0), {x: 0.0}, (0, 0, 0)),
+    "exponential where it is small": (my.where(x > 0, my.exp(k / x) * y, y), {x: 0.0}, (0, 1, 0)),
+    "entropy": (my.where(x > 0, x * my.log(x), 0.0), {x: 0.0}, (0, 0, 0)),
+    "power of zero": (x**k, {x: 0.0, k: 1.5}, (0, 0, 0)), "first power of zero": (x**k, {x: 0.0, k: 1.0}, (1, 0, 0)),
+    "constant power of zero": (x**2.5, {x: 0.0}, (0, 0, 0)),
+    "power by a logarithm": (my.exp(k * my.log(x)), {x: 0.0, k: 1.5}, (0, 0, 0)),
+    "power of a still zero": ((x * y)**0.3, {x: 0.0, y: 0.0}, (0, 0, 0)),
+    "length of nothing": (my.hypot(x, y), {x: 0.0, y: 0.0}, (0, 0, 0)),
+    "root of squares": (my.sqrt(x * x + y * y) * k, {x: 0.0, y: 0.0}, (0, 0, 0)),
+    "angle of nothing": (my.atan2(x, y), {x: 0.0, y: 0.0}, (0, 0, 0)),
+    "cube root of a square": (my.cbrt(x * x) + y, {x: 0.0}, (0, 1, 0)),
+    "angle of what is cut off": (my.asin(my.minimum(x, 1.0)) + my.acos(my.maximum(y, -1.0)), {x: 2.0, y: -3.0},
+                                 (0, 0, 0)),
+    "size": (abs(x) + y, {x: 0.0}, (1, 1, 0)),
+}
+
+
+@pytest.mark.parametrize("name", at_their_ends)
+def test_a_product_with_a_derivative_that_is_zero_is_zero(name):
+    expression, there, expected = at_their_ends[name]
+    there, symbols = {**at, **there}, [x, y, k]
+    (row,) = derivatives([expression], symbols)
+    forwards = [float(evaluate([my.sin(0.0) + row[i]], there)[0]) if i in row else 0.0 for i in range(3)]
+    assert forwards == pytest.approx(expected)
+    backwards = evaluate(transposed([expression], [constant(1.0)], symbols), there)
+    assert [float(one) for one in backwards] == pytest.approx(expected)
+    for i in range(3):
+        direction = [constant(float(i == j)) for j in range(3)]
+        assert float(evaluate(directional([expression], symbols, direction), there)[0]) == pytest.approx(expected[i])
+
+
+def test_a_weight_that_is_zero_makes_a_derivative_zero():
+    w = my.parameter("w")
+    assert evaluate(transposed([my.sqrt(x) + y], [w], [x, y]), {**at, x: 0.0, w: 0.0}) == [0.0, 0.0]
+
+
+def test_second_derivatives_do_not_stop_where_a_first_one_is_zero():
+    """Of (1 + x^2)^0.5 at 0, where x^2 has the slope 0: d/dx x (1 + x^2)^-0.5 = 1."""
+    slope = directional([my.sqrt(1 + x * x)], [x], [constant(1.0)])
+    assert float(evaluate(transposed(slope, [constant(1.0)], [x]), {x: 0.0})[0]) == 1.0
+
+
 def test_steps_have_no_derivatives_and_linear_terms_constant_ones():
     found = derivatives([my.floor(x) + 2.0 * y, my.round(x), z], [x, y, z])
     assert [set(row) for row in found] == [{1}, set(), {2}]
@@ -130,3 +177,15 @@ def test_a_sparse_network_takes_the_steps_of_the_dense_one():
     for i in range(9):
         # the Jacobians differ by rounding alone, and the chain damps all differences
         np.testing.assert_allclose(runs[0][f"s{i}"], runs[1][f"s{i}"], rtol=1e-9)
+
+
+def test_stiff_methods_pass_states_at_which_a_slope_is_infinite():
+    """Outflow over an edge, from above it, from it and from below."""
+    u, v, w, edge = *my.states("u v w"), my.parameter("edge")
+    model = my.model({u: -my.sqrt(my.maximum(u - edge, 0)), v: -my.where(v > edge, my.sqrt(v - edge), 0.0),
+                      w: -my.hypot(w, w) - my.maximum(w - 1, 0)**0.3})
+    run = my.solve(model, {edge: [0.5, 1.0, 2.0]}, start={u: 1, v: 1, w: 0}, time=(0, 1), method="rodas_5p",
+                   rtol=1e-8, atol=1e-10)
+    for state in (u, v):
+        np.testing.assert_allclose(run[state], [0.5 + (np.sqrt(0.5) - 0.5)**2, 1, 1], rtol=1e-7)
+    assert (run[w] == 0).all()

@@ -140,6 +140,18 @@ def test_a_projection_takes_times_and_parameters_of_each_instance():
     np.testing.assert_allclose(run["z"], [2, 3], rtol=1e-14)
 
 
+def test_algebraic_states_jump_where_their_equations_do_and_may_be_projected_at_the_start():
+    """y jumps at t = 1, and x goes on from where it is."""
+    x, y = my.states("x y")
+    a = my.parameter("a")
+    model = my.model({x: y, y: y**3 + y - my.where(my.time > 1, a, 0.0)}, mass_matrix={y: 0}, name="jumping")
+    wanted = np.linspace(-3, 3, 32)
+    run = my.solve(model, {a: wanted**3 + wanted}, start={x: 1, y: 0.5}, time=(0, 2), make_consistent=True, **tight)
+    assert run.report.failed == 0
+    np.testing.assert_allclose(run["y"], wanted, atol=1e-8)
+    np.testing.assert_allclose(run["x"], 1 + wanted, atol=1e-7)
+
+
 def test_studies_refuse_inconsistent_values():
     study = my.study(robertson(mass_matrix=[1, 1, 0]), start=dict(a=my.linspace(0.5, 1, 3), b=0, c=0), time=(0, 1),
                      **tight)

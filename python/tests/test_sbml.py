@@ -568,3 +568,56 @@ def test_switch_times_follow_from_parameters_of_each_instance():
     run = my.solve(model, {"p": p}, time=(0, 4), rtol=1e-9, atol=1e-11, interpreted=True)
     expected = [of_steps([(2, max(1.5 - at / 8, 0)), (at > 0, 0), (-(at > 0), at)], 4.0) for at in p.tolist()]
     np.testing.assert_allclose(run["A"], expected, rtol=1e-7)
+
+
+def test_functions_that_call_twice_deep_sums_and_long_chains_of_rules_are_read():
+    pytest.importorskip("libsbml")
+    math = '<math xmlns="http://www.w3.org/1998/Math/MathML">{}</math>'
+    half = "<apply><times/><cn>0.5</cn>{}</apply>"
+    functions = "".join(
+        f'<functionDefinition id="f{i}">' + math.format("<lambda><bvar><ci>x</ci></bvar>" + half.format(
+            "<ci>x</ci>" if i == 0 else f"<apply><plus/>{f'<apply><ci>f{i - 1}</ci><ci>x</ci></apply>' * 2}</apply>")
+            + "</lambda>") + "</functionDefinition>" for i in range(40))
+    chain = "".join(f'<assignmentRule variable="a{i}">' + math.format(f"<ci>{f'a{i + 1}' if i < 199 else 'y'}</ci>") +
+                    "</assignmentRule>" for i in range(200))
+    deep = "<apply><ci>f39</ci><ci>a0</ci></apply>"
+    for _ in range(400):
+        deep = f"<apply><plus/>{deep}<cn>0.001</cn></apply>"
+    names = ["y", *(f"a{i}" for i in range(200))]
+    model = my.read_sbml(
+        '<sbml xmlns="http://www.sbml.org/sbml/level3/version1/core" level="3" version="1"><model id="m">'
+        f"<listOfFunctionDefinitions>{functions}</listOfFunctionDefinitions><listOfParameters>" +
+        "".join(f'<parameter id="{n}" value="1" constant="false"/>' for n in names) +
+        f'</listOfParameters><listOfRules>{chain}<rateRule variable="y">{math.format(deep)}</rateRule></listOfRules>'
+        "</model></sbml>")
+    run = my.solve(model, {}, time=(0, 1), interpreted=True, rtol=1e-10, atol=1e-12)
+    np.testing.assert_allclose(run["y"], np.exp(0.5) + 0.8 * (np.exp(0.5) - 1), rtol=1e-8)  # y' = y / 2 + 0.4
+
+
+def test_triggers_by_functions_that_call_twice_are_read_in_no_time():
+    pytest.importorskip("libsbml")
+    math = '<math xmlns="http://www.w3.org/1998/Math/MathML">{}</math>'
+    argument = "<bvar><ci>{}</ci></bvar>"
+    # c0 = x > 1/2, and then c = (c or t > 9) and (c or not (t < 19)), which is x > 1/2 until t = 19
+    call = "<apply><ci>c{}</ci><ci>x</ci><ci>t</ci></apply>"
+    functions = ["<apply><gt/><ci>x</ci><cn>0.5</cn></apply>"] + [
+        f"<apply><and/><apply><or/>{call.format(i)}<apply><gt/><ci>t</ci><cn>9</cn></apply></apply><apply><or/>"
+        f"{call.format(i)}<apply><not/><apply><lt/><ci>t</ci><cn>19</cn></apply></apply></apply></apply>"
+        for i in range(40)]
+    written = "".join(
+        f'<functionDefinition id="c{i}">' + math.format(
+            f"<lambda>{argument.format('x')}{argument.format('t')}{body}</lambda>") + "</functionDefinition>"
+        for i, body in enumerate(functions))
+    time = '<csymbol encoding="text" definitionURL="http://www.sbml.org/sbml/symbols/time">t</csymbol>'
+    trigger = f"<apply><not/><apply><not/><apply><ci>c40</ci><ci>y</ci>{time}</apply></apply></apply>"
+    model = my.read_sbml(
+        '<sbml xmlns="http://www.sbml.org/sbml/level3/version1/core" level="3" version="1"><model id="m">'
+        f'<listOfFunctionDefinitions>{written}</listOfFunctionDefinitions><listOfParameters>'
+        '<parameter id="y" value="0" constant="false"/></listOfParameters><listOfRules>'
+        f'<rateRule variable="y">{math.format("<cn>1</cn>")}</rateRule></listOfRules><listOfEvents>'
+        '<event id="e" useValuesFromTriggerTime="true"><trigger initialValue="true" persistent="true">'
+        f'{math.format(trigger)}</trigger><listOfEventAssignments><eventAssignment variable="y">'
+        f'{math.format("<cn>-1</cn>")}</eventAssignment></listOfEventAssignments></event></listOfEvents>'
+        '</model></sbml>')
+    run = my.solve(model, {}, time=(0, 3), interpreted=True)
+    np.testing.assert_allclose(run["y"], 0, atol=1e-9)  # -1 at 1/2 and at 2

@@ -176,3 +176,19 @@ def test_initial_values_that_follow_from_a_parameter_have_its_derivative():
     np.testing.assert_allclose(given.sensitivity["A", "k"], (2 * rates - 2 * (rates**2 + 1)) * decay, rtol=1e-8)
     with pytest.raises(my.Error, match="the value of 'b' follows from components that sensitivities are by"):
         my.solve(model, {"k": rates}, **call)
+
+
+def test_an_event_in_place_of_a_jump_by_the_state_has_what_the_jump_leaves_out_and_a_note_says_so():
+    """z falls by 2 above c and by 1 below it, as a jump and as an event."""
+    z, w, q = my.states("z w q")
+    c, n = my.parameters("c n")
+    above = my.accessory("above")
+    model = my.model({z: my.where(z > c, -2.0, -1.0), w: my.where(above > 0, -2.0, -1.0), q: (z - z + my.time)**n},
+                     accessories={above: 1.0}, events=my.event(w - c, do={above: 1 - above}))
+    run = my.solve(model, {c: 0.5, n: [1.0, 2.0]}, start={z: 1, w: 1, q: 0}, time=(0, 1), sensitivities=[c, n],
+                   rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(run.sensitivity[w, c], 0.5, rtol=1e-6)
+    assert (run.sensitivity[z, c] == 0).all()
+    assert [note for note in run.report.notes if "the equations jump where `z > c` changes" in note]
+    # of the integral of t^n, though t = 0 has no logarithm
+    np.testing.assert_allclose(run.sensitivity[q, n], [-1 / 4, -1 / 9], rtol=1e-6)

@@ -72,6 +72,129 @@ def test_an_accessory_is_the_time_of_what_comes_later():
     np.testing.assert_allclose(run["x"], -2, rtol=1e-9)
 
 
+# What is set anew: x' = 1, set to 0 at x = 1 by an event that sets `due`.
+
+x, y = my.states("x y")
+due, other, seen = my.accessory("due"), my.accessory("other"), my.accessory("seen")
+spikes = my.integer_accessory("spikes")
+never = 1e300
+noted = {given: given + 1, seen: my.time}
+
+
+def spiking(*stops, at_spike=None, level=1.0, initialise=None, **first):
+    spike = my.event(x - level, direction="rising", do={x: 0, spikes: spikes + 1, **(at_spike or {})})
+    values = {due: never, other: never, seen: -1, given: 0, spikes: 0, **{my.accessory(n): v for n, v in first.items()}}
+    begins = {target: my.where(my.phase == 0, value, target) for target, value in values.items()}
+    return my.model({x: 1}, events=spike, stops=stops, name="spiking", initialise={**begins, **(initialise or {})})
+
+
+def counts(model, end=5.5, start=0.0, **options):
+    run = my.solve(model, {"x": start}, time=(0, end), method="tsitouras_5", device="cpu:1", interpreted=True,
+                   **options)
+    assert run.report.failed == 0
+    return int(run["spikes"][0]), int(run["given"][0]), float(run["seen"][0])
+
+
+@pytest.mark.parametrize("delay", [0, 0.25, 0.75])
+def test_a_stop_that_every_event_sets_anew_acts_every_time(delay):
+    spiked, acted, last = counts(spiking(my.stop(due, do=noted), at_spike={due: my.time + delay}))
+    assert spiked == 5
+    assert acted == (5 if delay < 0.5 else 4)
+    assert last == pytest.approx(acted + delay, rel=1e-14)
+
+
+def test_a_neuron_spikes_again_after_each_refractory_time():
+    """v' = 2 - v from 0 to 1 in ln 2; there it rests for 0.3."""
+    v, resting = my.state("v"), my.integer_accessory("resting")
+    model = my.model({v: my.where(resting == 1, 0.0, 2 - v)}, name="neuron",
+                     accessories={resting: 0, due: never, spikes: 0},
+                     events=my.event(v - 1, direction="rising", do={v: 0, resting: 1, spikes: spikes + 1,
+                                                                    due: my.time + 0.3}),
+                     stops=my.stop(due, do={resting: 0}))
+    run = my.solve(model, {"v": 0}, time=(0, 20), method="tsitouras_5", rtol=1e-10, atol=1e-10, device="cpu:1",
+                   interpreted=True)
+    assert run["spikes"] == 1 + np.floor((20 - np.log(2)) / (np.log(2) + 0.3))
+
+
+def test_an_action_sets_its_own_time_anew():
+    own = {due: my.time + 0.5}
+    model = spiking(my.stop(due, do={**noted, **own}), due=0.25, level=100)
+    assert counts(model) == (0, 11, 5.25)
+    assert counts(model, end=5.25) == (0, 11, 5.25)
+
+
+@pytest.mark.parametrize("phases", [2, 5, 11])
+def test_a_stop_set_anew_acts_as_often_however_the_domain_is_cut(phases):
+    model = spiking(my.stop(due, do=noted), at_spike={due: my.time + 0.25})
+    assert counts(model, phases=phases, phase_length=5.5 / phases)[:2] == (5, 5)
+    own = spiking(my.stop(due, do={**noted, due: my.time + 0.5}), level=100, due=0.25)
+    assert counts(own, phases=phases, phase_length=5.5 / phases)[:2] == (0, 11)
+
+
+def test_a_phase_that_goes_on_acts_at_its_start_if_it_sets_a_stop_there():
+    begins = spiking(my.stop(due, do=noted), level=100, initialise={due: my.time})
+    assert counts(begins, phases=11, phase_length=0.5)[1] == 11
+
+
+def test_a_time_that_has_passed_does_not_act_and_one_set_while_another_waits_replaces_it():
+    assert counts(spiking(my.stop(due, do=noted), at_spike={due: my.time - 0.5}))[1] == 0
+    waits = spiking(my.stop(due, do=noted), at_spike={due: my.time + 1.5})  # the next event comes first
+    assert counts(waits)[1] == 0
+    assert counts(waits, end=6.75)[1] == 0
+    once = spiking(my.stop(due, do=noted), at_spike={due: my.where(spikes < 3, my.time + 1.5, due)})
+    assert counts(once)[1:] == pytest.approx((1, 4.5), rel=1e-14)
+
+
+def test_a_time_that_stays_acts_once_and_one_that_is_set_to_the_same_instant_anew_acts_again():
+    assert counts(spiking(my.stop(2.5, do={**noted, due: 2.5}), my.stop(due, do={given: given + 10})))[1] == 11
+    stays = spiking(my.stop(due, do={**noted, due: due}), at_spike={due: 2.5})
+    assert counts(stays)[1:] == (1, 2.5)
+    # the action takes its time away, and that of the stop after it gives it back, twice
+    back = my.stop(other, do={due: my.where(given < 3, other, never), other: never})
+    again = spiking(my.stop(due, do={**noted, due: never, other: my.time}), back, at_spike={due: 2.5}, level=2)
+    assert counts(again)[1:] == (3, 2.5)
+
+
+def test_times_of_a_list_that_actions_set_need_not_stay_in_order():
+    model = spiking(my.stop([due, other], do=noted), at_spike={
+        due: my.where(spikes == 1, my.time + 0.5, due), other: my.where(spikes == 0, my.time + 0.25, other)})
+    assert counts(model)[1:] == pytest.approx((2, 2.5), rel=1e-14)
+    both = spiking(my.stop([due, other], do=noted), at_spike={due: my.time + 0.5, other: my.time + 0.25})
+    assert counts(both, end=5.4)[1:] == pytest.approx((9, 5.25), rel=1e-14)
+
+
+def test_the_first_of_equal_intervals_is_set_anew():
+    model = spiking(my.stop(due, every=0.25, count=2, do=noted), at_spike={due: my.time + 0.125})
+    assert counts(model)[1:] == pytest.approx((10, 5.375), rel=1e-14)
+    # at 0, 1, 2, where the interval becomes 2, of which a multiple is now: it has acted at this instant
+    grows = spiking(my.stop(0, every=other, do={**noted, other: my.where(my.time < 2, 1, 2)}), level=100,
+                    other=1)
+    assert counts(grows)[1:] == (4, 4.0)
+
+
+def test_a_stop_set_anew_acts_backwards_in_time():
+    spike = my.event(x - 1, do={x: 2, spikes: spikes + 1, due: my.time - 0.25})
+    model = my.model({x: 1}, events=spike, stops=my.stop(due, do=noted), name="backwards",
+                     accessories={due: -never, seen: 0, given: 0, spikes: 0})
+    run = my.solve(model, {"x": 2}, time=(0, -5.5), method="tsitouras_5", device="cpu:1", interpreted=True)
+    assert (run["spikes"], run["given"]) == (5, 5)
+    assert run["seen"][0] == pytest.approx(-5.25, rel=1e-14)
+
+
+def test_samples_one_rounding_from_a_stop_show_the_state_before_the_action():
+    model = my.model({x: 0}, stops=my.stop(0.1 + 0.2, do={x: 1}), name="sampled")
+    times = [np.nextafter(0.3, 0), 0.3, np.nextafter(0.1 + 0.2, 1), 0.4, np.nextafter(0.4, 1)]
+    run = my.solve(model, {"x": 0}, time=(0, 0.4), samples=times, method="tsitouras_5", device="cpu:1",
+                   interpreted=True)
+    np.testing.assert_array_equal(np.ravel(run[x]), [0, 0, 0, 1, 1])
+    begins = my.solve(model, {"x": 0}, time=(0.1, 0.4), samples=[np.nextafter(0.1, 0), 0.1, 0.4], method="tsitouras_5",
+                      device="cpu:1", interpreted=True)
+    np.testing.assert_array_equal(np.ravel(begins[x]), [0, 0, 1])
+    with pytest.raises(my.Error, match=r"to 0\.400000000001,.*from 0 to 0\.4"):
+        my.solve(model, {"x": 0}, time=(0, 0.4), samples=[0.4 + 1e-12], method="tsitouras_5", device="cpu:1",
+                 interpreted=True)
+
+
 def test_stops_are_written_as_cpp():
     text = treatment(my.stop(0, every=interval, count=doses, name="intake", do={gut: gut + dose})).cpp()
     assert "enum stop { intake, n_stop };" in text

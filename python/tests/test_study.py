@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 
 import numpy as np
 import pytest
@@ -316,6 +317,56 @@ def test_a_store_of_another_study_is_refused(tmp_path):
     other = my.model({x: v, v: x - x**3 - k * v + B * my.sin(my.time)})
     with pytest.raises(my.Error, match="notes.model"):
         my.study(other, grid(), **call).run(tmp_path / "store")
+
+
+def test_the_message_of_a_model_that_was_edited_names_what_it_does_otherwise(tmp_path):
+    def run(factor=1.0, damping=0.1, rewritten=False):
+        falls = my.event(x - 0.5, direction="falling", name="falls", do={v: factor * v})
+        acceleration = -damping * v - x if rewritten else -x - damping * v
+        model = my.model({x: v, v: acceleration}, events=[falls])
+        my.study(model, {x: [1.0, 2.0]}, start={v: 0.0}, time=(0, 3), interpreted=True).run(tmp_path / "store")
+
+    run()
+    run()
+    with pytest.raises(my.Error, match="the right-hand side of state.v: .* in the store, .* here"):
+        run(damping=0.1001)
+    with pytest.raises(my.Error, match="state.v after the action of event .*: .* in the store, .* here"):
+        run(factor=0.9)
+    with pytest.raises(my.Error) as raised:  # its source is another, and what it does is not
+        run(rewritten=True)
+    assert "notes.model" in str(raised.value) and "right-hand side" not in str(raised.value)
+
+
+def test_an_infinite_expiry_never_takes_over(tmp_path):
+    study = my.study(my.model({x: -x}), start={x: [1.0, 2.0]}, time=(0, 1), interpreted=True)
+    study.run(tmp_path / "store", expiry=float("inf"))
+    for expiry in (0, -1, float("nan")):
+        with pytest.raises(my.Error, match=f"expiry is {expiry}: give seconds"):
+            study.run(tmp_path / "store", expiry=expiry)
+
+
+@pytest.mark.parametrize("given, what", [
+    (dict(notes={"who": "\ud800"}), "the note 'who' has"), (dict(notes={"\udcff": "I"}), "the key of a note has"),
+    (dict(title="\udfff"), "the title has"), (dict(units={x: "m\ud83d"}), "the unit of 'state.x' has")])
+def test_half_a_character_is_refused_by_its_place(given, what):
+    with pytest.raises(my.Error, match=what + ".*which is no character"):
+        my.study(my.model({x: -x}), start={x: [1.0]}, time=(0, 1), interpreted=True, **given)
+
+
+def test_a_study_too_large_for_any_disk_is_refused_at_once(tmp_path):
+    study = my.study(my.model({x: -x}), {x: my.linspace(1, 2, 10**15)}, time=(0, 1), interpreted=True)
+    begin = time.process_time()
+    with pytest.raises(my.Error, match="that are left take .* free: free space"):
+        study.run(tmp_path / "store")
+    assert time.process_time() - begin < 5 and not (tmp_path / "store").exists()
+
+
+def test_results_that_live_until_the_end_are_no_page_of_warnings():
+    script = ("import ctypes, myriad as my; x = my.state('x')\n"
+              "run = my.solve(my.model({x: -x}), start={x: [1.0]}, time=(0, 1), interpreted=True)\n"
+              "ctypes.pythonapi.Py_IncRef(ctypes.py_object(run))  # as by another library that has an array")
+    told = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert told.stderr == ""
 
 
 @pytest.mark.parametrize("change, message", [

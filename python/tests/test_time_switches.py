@@ -187,6 +187,40 @@ def test_derivatives_by_the_time_of_a_jump_are_those_of_a_closed_form():
                                (2 * h), rtol=1e-7)
 
 
+@pytest.mark.parametrize("precision, error", [("double", 1e-8), ("float", 1e-4)])
+def test_jumps_at_one_time_each_contribute_the_derivative_of_their_own_time(precision, error):
+    """Single jumps, periods, jumps within jumps and an action, at one time exactly or but for rounding, and apart."""
+    nested, level, z = my.states("nested level z")
+    c, period, a, b, dose = my.parameters("c period a b dose")
+    pulses = 2.0 * where(t % period < a, 1.0, 0.0) + 5.0 * where(t % period < b, 1.0, 0.0)
+    model = my.model({x: where(t > T, 3.0, 0.0) + where(t > c, 1.0, 0.0) + pulses,
+                      nested: where(t > T, where(t > c, 3.0, 1.0), 0.0), level: my.floor(t / period),
+                      z: where(t > T, 1.0, 0.0) - z}, stops=my.stop(dose, do={z: z + 1}), name="coinciding")
+    given = {T: np.array([0.3, 0.3, 0.22]), c: np.array([0.3, 0.3, 0.26]), dose: np.array([0.3, 0.3, 0.31]),
+             period: np.array([0.1, 0.15, 0.15]), a: 0.05, b: 0.05}  # 3 * 0.1 is a rounding later than 0.3
+    end, tolerance = 0.38, max(1e-3 * error, 1e-6 if precision == "float" else 0)
+    run = my.solve(model, given, start={x: 0, nested: 0, level: 0, z: 0}, time=(0, end), precision=precision,
+                   rtol=tolerance, atol=tolerance, device="cpu", sensitivities=[T, c, period, a, b, dose])
+    s, near = run.sensitivity, {"rtol": error, "atol": error}
+    pulse_count, level_sum = np.array([4, 3, 3]), np.array([1 + 2 + 3, 1 + 2, 1 + 2])
+    nothing = np.zeros(3)
+    np.testing.assert_allclose(s[x], np.stack([nothing - 3, nothing - 1, nothing, 2.0 * pulse_count, 5.0 * pulse_count,
+                                               nothing], axis=-1), **near)
+    np.testing.assert_allclose(s[nested][:, 0] + s[nested][:, 1], [-3, -3, -3], **near)  # each differs by the side
+    np.testing.assert_allclose(s[nested][2], [-1, -2, 0, 0, 0, 0], **near)
+    np.testing.assert_allclose(s[level, period], -level_sum, **near)
+    np.testing.assert_allclose(s[z, dose], np.exp(given[dose] - end), **near)
+    np.testing.assert_allclose(s[z, T], -np.exp(given[T] - end), **near)
+    np.testing.assert_allclose(s[z, c], nothing, **near)
+
+
+def test_jumps_have_stops_of_their_own_only_where_derivatives_are_by_their_times():
+    model = my.model({x: where(t > T, 1.0, 0.0) + where(t % 24 < 12, k, 0.0)})
+    assert model.stop_names == ["jump"] and len(model.accessories) == 2
+    assert my.with_sensitivities(model, [k]).model is model
+    assert len(my.with_sensitivities(model, [T, k]).model.stop_names) == 2
+
+
 @pytest.mark.parametrize("method", ["tsitouras_5", pytest.param("rodas_5p", marks=pytest.mark.long)])
 def test_an_adjoint_goes_back_through_jumps(method):
     height = my.parameter("height")

@@ -55,6 +55,16 @@ def test_actions_follow_from_each_other_at_one_instant():
     assert run["count"] == 12 and run["y"] == 1
 
 
+@pytest.mark.parametrize("start, apart", [(0, 1e-12), (1.7e9, 0.05), (1.7e9, 1e-5), (-1.7e9, 0.05)])
+def test_actions_whose_times_differ_by_more_than_rounding_run_one_after_the_other(start, apart):
+    later = my.trigger(x > 1, do={count: 10 * count + 1, at: my.time}, delay=1 + apart)
+    sooner = my.trigger(x > 1, do={count: 10 * count + 2, log: my.time}, delay=1)
+    run = my.solve(ramp(later, sooner), {"x": 0, "y": 0}, time=(start, start + 5), method="tsitouras_5", device="cpu:1",
+                   maximum_step=0.4, interpreted=True)
+    assert run["count"] == 21
+    assert run["at"][0] - run["log"][0] == pytest.approx(apart, abs=4 * np.spacing(abs(start) + 2))
+
+
 @pytest.mark.parametrize("interpreted", [True, False])
 def test_delays_values_priorities_and_cancelling(interpreted):
     """The bits are those of the closed form: times of actions are sums of those of triggers and delays."""
@@ -174,6 +184,9 @@ def test_a_study_has_triggers(tmp_path):
     (lambda: ramp(my.trigger(x > 1), tie_seed=-1), "tie_seed is -1.*whole number from 0 on"),
     (lambda: ramp(tie_seed=1), "give a model with triggers a whole number"),
     (lambda: my.trigger(x > 1, room=0), "the room of a trigger is 0"),
+    (lambda: my.trigger(x > 1, room=10**6), "the room of a trigger is 1000000.*at most 1000.*that may wait"),
+    (lambda: ramp(*[my.trigger(x > k, delay=1, room=600) for k in (1, 2)]),
+     "the triggers have room for 1200 actions.*at most 1000 in a model.*smaller room="),
     (lambda: my.trigger(x > 1, persistent="no"), "persistent of a trigger is 'no'"),
     (lambda: my.trigger(x > 1, name="int"), "keyword of C"),
     (lambda: ramp(my.event(x)), r"triggers\[0\] is Event.*make it by myriad.trigger"),

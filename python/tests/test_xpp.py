@@ -189,7 +189,8 @@ def test_a_file_gives_its_name_to_the_model(tmp_path):
     ("volterra y=1", "integrals over the past"),
     ("y'=ran(1)", "random numbers"), ("special k=conv(even,11,3,w,x)", "networks"), ("export {x} {y}", "libraries"),
     ("global 0 {x-1} {x=0}", "sign 0"), ("global 1 {x-1} {q=0}", "neither a state nor a parameter"),
-    ("y'=q+1", "`q` is unknown"), ("early=late\nlate=x", "`late` is unknown"), ("y'=f(x,2)\nf(x)=x", "2 arguments"),
+    ("y'=q+1", "`q` is unknown"), ("early=late\nlate=early+x", "`early` depends on itself"),
+    ("y'=f(x,2)\nf(x)=x", "2 arguments"),
     ("y'=x+", "it ends where"), ("y'=(x", "`)` is expected"), ("y'=x$2", "`$` is not understood"),
     ("par a=1\npar a=2", "a second time"), ("x'=2", "a second time"), ("init q=1", "has no equation"),
     ("table f missing.tab", "there is no file"), ("f(x)=f(x)\ny'=f(x)", "calls itself"), ("y'=besselj(0,x)", "unknown"),
@@ -239,3 +240,15 @@ def test_names_that_differ_in_underscores_are_not_mixed_up():
     run = solved("p k_=1,k=2\nx_'=k_\nx'=k\naux next_jump=heav(t-1)\ny'=heav(t-1)\n", {"k_": 5}, samples=None)
     for name, value in (("k_", 5), ("k", 2), ("x_", 10), ("x", 4), ("next_jump", 1), ("y", 1)):
         np.testing.assert_allclose(run[name], value, rtol=1e-9, err_msg=name)
+
+
+def test_quantities_may_be_defined_below_what_uses_them_and_percent_begins_remarks():
+    model = my.read_xpp("% a remark\nx'=-z\nz=y+1\ny=w*2\nw=x\n%\n")
+    assert model.outputs["z"] is my.read_xpp("w=x\ny=w*2\nz=y+1\nx'=-z\n").outputs["z"]
+
+
+def test_formulas_as_deep_as_files_have_them_are_read_and_functions_that_call_twice_take_no_longer():
+    chain = "".join(f"q{i}=q{i + 1}*2\n" for i in range(400)) + "q400=x\n"
+    assert "q0" in my.read_xpp(chain + "x'=" + "(" * 400 + "q0" + ")" * 400 + "\n").outputs
+    calls = "f0(x)=x/2\n" + "".join(f"f{i}(x)=f{i - 1}(x)/2+f{i - 1}(x)/2\n" for i in range(1, 60))
+    assert list(my.read_xpp(calls + "x'=f59(x)\n").states) == ["x"]

@@ -31,7 +31,16 @@ child_process::child_process(const std::vector<std::string>& words, const std::s
         posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, output.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
         posix_spawn_file_actions_adddup2(&files, STDOUT_FILENO, STDERR_FILENO);
     }
-    if (posix_spawnp(&id_, arguments[0], &files, nullptr, arguments.data(), environ) != 0) id_ = -1;
+    // What this program ignores, that one would, too: compilers wait for children of their own.
+    posix_spawnattr_t how;
+    posix_spawnattr_init(&how);
+    sigset_t usual;
+    sigemptyset(&usual);
+    sigaddset(&usual, SIGCHLD);
+    posix_spawnattr_setsigdefault(&how, &usual);
+    posix_spawnattr_setflags(&how, POSIX_SPAWN_SETSIGDEF);
+    if (posix_spawnp(&id_, arguments[0], &files, &how, arguments.data(), environ) != 0) id_ = -1;
+    posix_spawnattr_destroy(&how);
     posix_spawn_file_actions_destroy(&files);
 }
 
@@ -46,7 +55,7 @@ int child_process::wait(const signal_check& check) {
     while (waitpid(id_, &status, 0) < 0) {
         if (errno != EINTR) {
             id_ = -1;
-            return status_ = 128;
+            return status_ = unknown;
         }
         if (check) check();
     }
@@ -68,7 +77,8 @@ std::string output_of(const std::vector<std::string>& words) {
     const int file = ::memfd_create("output", MFD_CLOEXEC);
     if (file < 0) return "";
     std::string text;
-    if (child_process(words, message("/proc/self/fd/", file)).wait() == 0) {
+    const int status = child_process(words, message("/proc/self/fd/", file)).wait();
+    if (status == 0 || status == child_process::unknown) {
         char part[4096];
         for (ssize_t got; (got = ::pread(file, part, sizeof part, static_cast<off_t>(text.size()))) > 0;)
             text.append(part, static_cast<std::size_t>(got));

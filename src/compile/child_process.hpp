@@ -24,7 +24,9 @@ public:
     /// Ends the program if nobody has waited for it.
     ~child_process();
 
-    /// Its exit status; 127 if there is no such program, 128 if a signal ended it.
+    /// Its exit status; 127 if there is no such program, 128 if a signal ended it, `unknown` if only the system knows,
+    /// as in a program that ignores SIGCHLD or waits for all children: what it was to make is there if it succeeded.
+    static constexpr int unknown = -1;
     int wait(const signal_check& check = {});
 
 private:
@@ -32,7 +34,7 @@ private:
     int status_ = 127;
 };
 
-/// What a program prints on standard output; empty if it fails.
+/// What a program prints on standard output; empty if it fails, as far as that is known.
 std::string output_of(const std::vector<std::string>& words);
 
 /// The path of a program on the PATH, or of a file that can be run; empty if there is none.

@@ -3,12 +3,14 @@
 #include "compile/compiled_cache.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <charconv>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <system_error>
@@ -16,8 +18,11 @@
 #include <vector>
 
 #include <fcntl.h>
+#include <pthread.h>
 #include <sys/file.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include "myriad/host/core/error.hpp"
@@ -32,12 +37,13 @@ namespace fs = std::filesystem;
 constexpr std::string_view work_mark = ".work.";
 
 std::uintmax_t size_limit() {
-    std::uintmax_t limit = std::uintmax_t{1} << 30;
+    constexpr std::uintmax_t usual = std::uintmax_t{1} << 30;
     const std::string asked = variable("MYRIAD_CACHE_SIZE");
-    if (asked.empty()) return limit;
+    if (asked.empty()) return usual;
+    std::uintmax_t limit = 0;
     const auto [end, failed] = std::from_chars(asked.data(), asked.data() + asked.size(), limit);
     require(failed == std::errc() && end == asked.data() + asked.size(), "MYRIAD_CACHE_SIZE is '", asked, "'",
-            host::cure, "give a number of bytes, such as ", limit);
+            host::cure, "give a number of bytes, such as ", usual);
     return limit;
 }
 
@@ -60,8 +66,19 @@ bool make_folders(const fs::path& path) {
     return ::mkdir(path.c_str(), 0700) == 0 || errno == EEXIST;
 }
 
-/// The name by which an open file, and no other, is read, written and loaded.
+/// The name by which an open file, and no other, is read and written.
 std::string path_of(int file) { return "/proc/self/fd/" + std::to_string(file); }
+
+/// A name of the same file that no library of this process was loaded by: the system's loader takes a name that it
+/// knows for the library that it has loaded by it, and numbers of files come again. Slashes and dots, which lead
+/// nowhere, spell a number, and whose it is, as another library of the process may have this code, too.
+std::string new_path_of(int file) {
+    static std::atomic<std::uint64_t> loaded{0};
+    std::string path = "/proc/self/fd/";
+    for (const std::uint64_t number : {std::uint64_t{reinterpret_cast<std::uintptr_t>(&loaded)}, ++loaded})
+        for (int bit = 0; bit < 64; ++bit) path += (number >> bit & 1) != 0 ? "./" : "/";
+    return path + std::to_string(file);
+}
 
 /// Closes a file at its end, unless that is released.
 class open_file {
@@ -78,6 +95,31 @@ public:
 private:
     int file_;
 };
+
+/// A copy of a file in memory, from which code may be run where the file system of the file forbids that; -1 if there
+/// can be none.
+int executable_copy(int file) {
+    constexpr unsigned for_code = 0x10;  // MFD_EXEC, which older headers and kernels do not know
+    int made = ::memfd_create("myriad_model", MFD_CLOEXEC | for_code);
+    if (made < 0 && errno == EINVAL) made = ::memfd_create("myriad_model", MFD_CLOEXEC);
+    open_file copy(made);
+    if (made < 0) return -1;
+    const std::string content = read_file(path_of(file));
+    for (std::size_t at = 0; at < content.size();) {
+        const ssize_t written = ::write(made, content.data() + at, content.size() - at);
+        if (written < 0 && errno != EINTR) return -1;
+        at += written > 0 ? static_cast<std::size_t>(written) : 0;
+    }
+    return copy.release();
+}
+
+/// Loads an open file, which may be closed afterwards.
+void load_file(int file, const compiled_cache::loader& load) {
+    struct statvfs is;
+    const bool is_forbidden = ::fstatvfs(file, &is) == 0 && (is.f_flag & ST_NOEXEC) != 0;
+    const open_file copy(is_forbidden ? executable_copy(file) : -1);
+    load(new_path_of(copy.get() >= 0 ? copy.get() : file));
+}
 
 // Behind a shared object there is the text that it was made from and a checksum of everything, by which damage is
 // noticed before the system loads it. Loaders do not look at it.
@@ -103,6 +145,39 @@ int open_own(int folder, const std::string& name) {
     return -1;
 }
 
+/// The locks of this process. A child that it forks has them open, too, and would hold them until it ends.
+class held_locks {
+public:
+    static void add(int file) {
+        const std::lock_guard guard(mine().mutex_);
+        mine().files_.push_back(file);
+    }
+    /// Unlocks and closes one; one that this process only has from its parent is closed already.
+    static void give_back(int file) {
+        const std::lock_guard guard(mine().mutex_);
+        if (std::erase(mine().files_, file) == 0) return;
+        ::flock(file, LOCK_UN);
+        ::close(file);
+    }
+
+private:
+    held_locks() {
+        ::pthread_atfork([] { mine().mutex_.lock(); }, [] { mine().mutex_.unlock(); },
+                         [] {
+                             for (const int file : mine().files_) ::close(file);
+                             mine().files_.clear();
+                             mine().mutex_.unlock();
+                         });
+    }
+    static held_locks& mine() {
+        static auto* const all = new held_locks;  // for the life of the process
+        return *all;
+    }
+
+    std::mutex mutex_;
+    std::vector<int> files_;
+};
+
 /// Takes the lock of a key; -1 if another process has it and `wait` is false, or if there are no locks here. A file is
 /// removed by the process that has its lock, so that it must be the one which has the name then.
 int take_lock(int folder, const std::string& name, bool wait, const signal_check& check = {}) {
@@ -115,14 +190,16 @@ int take_lock(int folder, const std::string& name, bool wait, const signal_check
             if (check) check();
         struct stat mine, named;
         if (locked == 0 && ::fstat(file, &mine) == 0 &&
-            ::fstatat(folder, name.c_str(), &named, AT_SYMLINK_NOFOLLOW) == 0 && mine.st_ino == named.st_ino)
+            ::fstatat(folder, name.c_str(), &named, AT_SYMLINK_NOFOLLOW) == 0 && mine.st_ino == named.st_ino) {
+            held_locks::add(file);
             return lock.release();
+        }
         if (locked < 0) return -1;
     }
 }
 bool is_loaded(int file, const compiled_cache::loader& load) {
     try {
-        load(path_of(file));
+        load_file(file, load);
         return true;
     } catch (const error&) {
         return false;
@@ -138,7 +215,7 @@ bool is_compiled(const fs::path& path) {
 void give_lock_back(int folder, const std::string& name, int file) {
     if (file < 0) return;
     ::unlinkat(folder, name.c_str(), 0);
-    ::close(file);
+    held_locks::give_back(file);
 }
 
 }  // namespace
@@ -149,24 +226,47 @@ void give_lock_back(int folder, const std::string& name, int file) {
 
 namespace {
 
-/// A folder that lasts as long as this process, and not as its children.
+/// A folder that lasts as long as the process that made it.
 struct folder_of_process {
     fs::path path;
     pid_t owner = ::getpid();
 
     folder_of_process() {
         std::error_code unknown;
-        std::string name = (fs::temp_directory_path(unknown) / "myriad.XXXXXX").string();
-        const bool is_made = ::mkdtemp(name.data()) != nullptr;
-        require(is_made, "neither the cache nor a temporary folder can be written", host::cure,
-                "set MYRIAD_CACHE_DIR to a folder that can");
-        path = name;
+        for (const fs::path& where : {fs::temp_directory_path(unknown), fs::path("/tmp"), fs::path("/var/tmp")}) {
+            if (!where.is_absolute()) continue;
+            std::string name = (where / "myriad.XXXXXX").string();
+            if (::mkdtemp(name.data()) == nullptr) continue;
+            path = name;
+            return;
+        }
+        host::refuse({"neither the cache nor a temporary folder can be written", host::cure,
+                      "set MYRIAD_CACHE_DIR to a folder that can"});
     }
+    folder_of_process(const folder_of_process&) = delete;
+    folder_of_process& operator=(const folder_of_process&) = delete;
     ~folder_of_process() {
         std::error_code ignored;
         if (::getpid() == owner) fs::remove_all(path, ignored);
     }
+
+    /// This process'. A child has one of its own, since its parent's may be gone.
+    static fs::path own() {
+        static std::mutex mutex;
+        static std::optional<folder_of_process> made;
+        const std::lock_guard guard(mutex);
+        std::error_code unknown;
+        if (!made || made->owner != ::getpid() || !fs::is_directory(made->path, unknown)) made.emplace();
+        return made->path;
+    }
 };
+
+/// Whether a disk may have no room for what a compiler writes, which is removed again.
+bool is_full(const fs::path& folder) {
+    std::error_code unknown;
+    const fs::space_info room = fs::space(folder, unknown);
+    return !unknown && room.available < (std::uintmax_t{16} << 20);
+}
 
 }  // namespace
 
@@ -198,8 +298,8 @@ fs::path compiled_cache::user_folder() {
 }
 
 void compiled_cache::use_folder_of_process() {
-    static const folder_of_process own;
-    made_in_ = own.path;
+    made_in_ = folder_of_process::own();
+    if (made_in_folder_ != folder_) ::close(made_in_folder_);
     made_in_folder_ = ::open(made_in_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
 }
 
@@ -305,9 +405,7 @@ bool compiled_cache::find(const std::string& key, std::string_view made_from, co
         open_file file(folder < 0 ? -1 : open_own(folder, name));
         if (file.get() < 0 || !is_whole(read_file(path_of(file.get())), made_from)) return false;
         ::utimensat(folder, name.c_str(), nullptr, AT_SYMLINK_NOFOLLOW);  // the time of its last use, for `shrink`
-        if (!is_loaded(file.get(), load)) return false;
-        file.release();
-        return true;
+        return is_loaded(file.get(), load);
     };
     return find_in(folder_) || (made_in_folder_ != folder_ && find_in(made_in_folder_));
 }
@@ -315,27 +413,45 @@ bool compiled_cache::find(const std::string& key, std::string_view made_from, co
 bool compiled_cache::obtain(std::string_view made_from, const maker& make, const loader& load) {
     const std::string key = text_hash(made_from);
     if (find(key, made_from, load)) return true;
-    std::optional<workplace> work;
-    try {
-        work.emplace(*this, key);
-    } catch (const std::system_error& why) {  // as where the disk is full
-        if (made_in_folder_ != folder_)
-            throw error(statement_of("no folder can be made in ", made_in_.string(), " (", why.code().message(), ")",
-                                     host::cure, "free space, or set MYRIAD_CACHE_DIR to another folder"));
-        objection_ = message("compiled models are not kept in ", made_in_.string(), ", as it cannot be used (",
-                             why.code().message(), "): free space, or set MYRIAD_CACHE_DIR to another folder");
-        use_folder_of_process();
-        work.emplace(*this, key);
+    if (made_in_folder_ == folder_) {
+        const auto leave = [&](std::string_view why) {
+            objection_ = message("compiled models are not kept in ", made_in_.string(), ", as it cannot be used (", why,
+                                 "): free space, or set MYRIAD_CACHE_DIR to another folder");
+            use_folder_of_process();
+        };
+        try {
+            const bool was_there = make_model(key, made_from, make, load);
+            if (!was_there) shrink(key + ".so");
+            return was_there;
+        } catch (const std::system_error& why) {
+            leave(why.code().message());
+        } catch (const error&) {  // a compiler may not say that it cannot write
+            if (!is_full(made_in_)) throw;
+            leave(std::generic_category().message(ENOSPC));
+        }
     }
-    if (find(key, made_from, load)) return true;  // made by the process that held the lock
-    make(work->folder());
-    work->make_private();
-    open_file file(work->seal(made_from));
-    load(path_of(file.get()));
-    file.release();
-    work->keep(key + ".so");
-    work.reset();
-    if (made_in_folder_ == folder_) shrink(key + ".so");
+    try {
+        return make_model(key, made_from, make, load);
+    } catch (const std::system_error& why) {
+        throw error(statement_of("no folder can be made in ", made_in_.string(), " (", why.code().message(), ")",
+                                 host::cure, "free space, or set MYRIAD_CACHE_DIR to another folder"));
+    } catch (const error& why) {
+        if (!is_full(made_in_)) throw;
+        throw error(statement_of(why.said(), " (and the disk with ", made_in_.string(),
+                                 " is nearly full: free space, or set MYRIAD_CACHE_DIR to a folder on another)"));
+    }
+}
+
+/// Makes what is not there, unless the process that had the lock has; returns whether that is so.
+bool compiled_cache::make_model(const std::string& key, std::string_view made_from, const maker& make,
+                                const loader& load) const {
+    const workplace work(*this, key);
+    if (find(key, made_from, load)) return true;
+    make(work.folder());
+    work.make_private();
+    const open_file file(work.seal(made_from));
+    load_file(file.get(), load);
+    work.keep(key + ".so");
     return false;
 }
 
@@ -420,10 +536,12 @@ std::string text_hash(std::string_view text) {
 }
 
 void write_file(const fs::path& path, const std::string& text, std::ios::openmode mode) {
+    errno = 0;
     std::ofstream file(path, std::ios::binary | mode);
     file << text;
     file.close();
-    require(file.good(), path.string(), " cannot be written: is the disk full?");
+    require(file.good(), path.string(), " cannot be written (",
+            errno != 0 ? std::generic_category().message(errno) : "the system does not say why", ")");
 }
 std::string read_file(const fs::path& path) {
     std::ifstream file(path, std::ios::binary);

@@ -21,8 +21,8 @@ class compiled_cache {
 public:
     /// Writes `model.so` into a folder that is removed afterwards.
     using maker = std::function<void(const std::filesystem::path&)>;
-    /// Loads a file by a name that it has while it is open; it stays open if that succeeds, since the system's loader
-    /// tells libraries apart by their names. Throws `error` if the file cannot be loaded.
+    /// Loads a file by a name that it has until this returns, and that no other file ever gets, since the system's
+    /// loader tells libraries apart by their names. Throws `error` if the file cannot be loaded.
     using loader = std::function<void(const std::string&)>;
 
     /// Opens the folder, which is made if need be. Throws `error` if $MYRIAD_CACHE_SIZE is no number. `check` is for
@@ -61,6 +61,7 @@ public:
 private:
     class workplace;
     bool find(const std::string& key, std::string_view made_from, const loader& load) const;
+    bool make_model(const std::string& key, std::string_view made_from, const maker& make, const loader& load) const;
     void open_folder(const std::filesystem::path& path);
     void use_folder_of_process();
     void shrink(const std::string& keep) const;

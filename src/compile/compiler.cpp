@@ -138,10 +138,41 @@ std::string made_from(const compiler& by, const std::vector<std::string>& flags,
     return text;
 }
 
+namespace {
+
+/// The length of the character of UTF-8 that begins there; 0 if none does.
+std::size_t character_at(std::string_view text, std::size_t at) {
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(i < text.size() ? text[i] : 0); };
+    const unsigned first = byte(at), second = byte(at + 1);
+    if (first < 0x80) return 1;
+    const std::size_t length = first >= 0xc2 && first < 0xe0   ? 2
+                               : first >= 0xe0 && first < 0xf0 ? 3
+                               : first >= 0xf0 && first < 0xf5 ? 4
+                                                               : 0;
+    for (std::size_t i = 1; i < length; ++i)
+        if ((byte(at + i) & 0xc0) != 0x80) return 0;
+    // What has a shorter form, surrogates, and what is beyond the last character.
+    const bool is_wrong = (first == 0xe0 && second < 0xa0) || (first == 0xed && second >= 0xa0) ||
+                          (first == 0xf0 && second < 0x90) || (first == 0xf4 && second >= 0x90);
+    return is_wrong ? 0 : length;
+}
+
+}  // namespace
+
+std::string in_utf8(std::string_view text) {
+    std::string made;
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t length = character_at(text, at);
+        made += length > 0 ? text.substr(at, length) : std::string_view("\xef\xbf\xbd");
+        at += std::max<std::size_t>(length, 1);
+    }
+    return made;
+}
+
 std::vector<std::string> error_lines(const std::string& output, std::size_t most) {
     std::vector<std::string> found;
     std::string last;
-    std::istringstream lines(output);
+    std::istringstream lines(in_utf8(output));
     for (std::string line; std::getline(lines, line);) {
         if (!line.empty()) last = line;
         if (line.find("error:") != std::string::npos && found.size() < most) found.push_back(line);

@@ -40,6 +40,9 @@ openmp::instruction_set wanted_instruction_set();
 std::string made_from(const compiler& by, const std::vector<std::string>& flags, std::string_view headers,
                       std::string_view sources);
 
+/// A text in which whatever is not UTF-8, as of a source in another encoding, is replaced by U+FFFD.
+std::string in_utf8(std::string_view text);
+
 /// The lines of a compiler's output that name errors, at most so many; the last line if none does.
 std::vector<std::string> error_lines(const std::string& output, std::size_t most);
 /// The first of them without the place.

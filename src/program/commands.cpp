@@ -3,6 +3,7 @@
 #include "program/commands.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -48,8 +49,13 @@ std::string data_file(const char* name) {
 }
 
 std::string read_file(const std::string& path) {
+    std::error_code unknown;
+    const fs::file_status status = fs::status(path, unknown);
+    if (fs::is_directory(status)) throw input_error(path + ": is a folder: give a file");
+    if (fs::exists(status) && !fs::is_regular_file(status))
+        throw input_error(path + ": is a device or a pipe, which cannot be read again: give a file");
     const std::optional<std::string> text =
-        fs::is_regular_file(path) ? studies::read_text(studies::file_system::real(), path) : std::nullopt;
+        fs::exists(status) ? studies::read_text(studies::file_system::real(), path) : std::nullopt;
     if (!text) throw input_error(path + ": there is no such file");
     return *text;
 }
@@ -136,14 +142,25 @@ const program_method& find_method(const program_model& model, const study_file::
                            wanted.real == studies::element::f32 ? " (float)" : "", suggestion(name, names)));
 }
 
-/// The names of the structs that a header defines.
+/// The names of the structs that a header defines, also by another name for one.
 std::vector<std::string> structs_of(const std::string& text) {
     std::vector<std::string> names;
-    for (const std::string_view word : {"struct ", "class ", "using "}) {
-        for (std::size_t at = 0; (at = text.find(word, at)) != std::string::npos;) {
+    const auto is_of_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+    const std::string_view all = text;
+    for (const std::string_view word : {"struct", "class", "using"}) {
+        for (std::size_t at = 0; (at = all.find(word, at)) != all.npos;) {
+            const bool begins = at == 0 || !is_of_name(all[at - 1]);
             at += word.size();
-            const std::size_t end = text.find_first_of(" \t\n{:;=<", at);
-            if (end != std::string::npos && end > at) names.push_back(text.substr(at, end - at));
+            const std::size_t begin = std::min(all.find_first_not_of(" \t\r\n", at), all.size());
+            std::size_t end = begin;
+            while (end < all.size() && is_of_name(all[end])) ++end;
+            std::string_view rest = all.substr(end);
+            rest.remove_prefix(std::min(rest.find_first_not_of(" \t\r\n"), rest.size()));
+            // What follows tells a definition from a template's parameter, a declaration, and a word in a comment.
+            const bool defines = word == "using" ? rest.starts_with('=')
+                                                 : rest.starts_with('{') || rest.starts_with("final") ||
+                                                       (rest.starts_with(':') && !rest.starts_with("::"));
+            if (begins && begin > at && end > begin && defines) names.emplace_back(all.substr(begin, end - begin));
         }
     }
     return names;
@@ -276,6 +293,14 @@ std::string beside(const std::string& file, const std::string& path) {
     return (fs::path(file).parent_path() / path).lexically_normal().string();
 }
 
+/// The number of instances of a study that is done, if none of them could be integrated; else 0.
+std::int64_t all_invalid(const std::string& folder) {
+    const studies::store_progress now = open_store(folder).progress();
+    const auto found = std::find_if(now.statuses.begin(), now.statuses.end(),
+                                    [](const auto& of) { return of.first == "invalid_input"; });
+    return found != now.statuses.end() && found->second == now.all_instances ? now.all_instances : 0;
+}
+
 /// Runs a study; the header is there already when it goes on.
 int run_study(const run_request& asked, study_file& file, const std::string& text, const std::string& folder,
               study_file::model_choice wanted, const std::optional<model_source>& header) {
@@ -323,6 +348,13 @@ int run_study(const run_request& asked, study_file& file, const std::string& tex
         return signal > 0 ? 128 + signal : 1;
     }
     if (!asked.exported.empty()) export_results(result.results(), asked.exported, "");
+    if (const std::int64_t count = all_invalid(folder); count > 0) {
+        tell(message("all ", count,
+                     " instances are invalid_input, and none was integrated: initial values, parameters "
+                     "and times must be finite; t_end may be infinite if there are options.phase_length, or an event "
+                     "or a hook that ends the phase"));
+        return 2;
+    }
     return 0;
 }
 

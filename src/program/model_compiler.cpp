@@ -8,14 +8,14 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <string_view>
 #include <system_error>
 #include <vector>
-
-#include <dlfcn.h>
 
 #include "compile/child_process.hpp"
 #include "compile/compiled_cache.hpp"
 #include "compile/compiler.hpp"
+#include "compile/loaded_library.hpp"
 #include "myriad/host/core/error.hpp"
 
 namespace myriad::programs {
@@ -107,7 +107,8 @@ std::string host_file(const compile_request& wanted) {
                    ", myriad_compiled::method>(); }\n");
 }
 
-void compile(const compile_request& wanted, const compiler& by, const header_flags& headers, const fs::path& folder) {
+void compile(const compile_request& wanted, const compiler& by, const header_flags& headers, std::string_view made_from,
+             const fs::path& folder) {
     const auto start = [&](const std::string& name, const std::vector<std::string>& arguments) {
         std::vector<std::string> words = by.command;
         words.insert(words.end(), arguments.begin(), arguments.end());
@@ -119,33 +120,34 @@ void compile(const compile_request& wanted, const compiler& by, const header_fla
         flags.insert(flags.end(), {"-c", file + ".cpp", "-o", file + ".o"});
         return start(name, flags);
     };
-    const auto finish = [&](child_process& run, const char* name) {
-        if (run.wait() == 0) return;
+    const auto finish = [&](child_process& run, const char* name, const char* result) {
+        const int status = run.wait();
+        if (status == 0 || (status == child_process::unknown && fs::is_regular_file(folder / result))) return;
         std::string lines;
         for (const std::string& line : compiling::error_lines(compiling::read_file(folder / name), 5))
             lines += "\n  " + line;
         throw error(message(wanted.source.name, " does not compile (", by.name(), "):", lines));
     };
     child_process of_kernels = start_file("kernels", kernel_flags(by, headers), kernel_file(wanted));
-    child_process of_host = start_file("host", host_flags(headers), host_file(wanted));
-    finish(of_kernels, "kernels.txt");
-    finish(of_host, "host.txt");
+    child_process of_host =
+        start_file("host", host_flags(headers), host_file(wanted) + compiling::digest_line(made_from));
+    finish(of_kernels, "kernels.txt", "kernels.o");
+    finish(of_host, "host.txt", "host.o");
     // Its own functions come first, also where another model of the same name was loaded before.
     child_process linking = start("link", {"-shared", "-fopenmp", "-Wl,-Bsymbolic", folder / "host.o",
                                            folder / "kernels.o", "-o", folder / "model.so"});
-    finish(linking, "link.txt");
+    finish(linking, "link.txt", "model.so");
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
 // What was compiled
 // ---------------------------------------------------------------------------------------------------------------------
 
-/// Loads it for the life of the process: its code may be running.
-void load(const std::string& path) {
-    void* const handle = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-    require(handle != nullptr, "the compiled model cannot be loaded: ", handle != nullptr ? "" : ::dlerror());
-    const auto add = reinterpret_cast<void (*)()>(::dlsym(handle, register_symbol));
+void load(const std::string& path, std::string_view made_from) {
+    compiling::loaded_library loaded(path, made_from);
+    const auto add = reinterpret_cast<void (*)()>(loaded.find(register_symbol));
     require(add != nullptr, "what was compiled holds no model: remove the cache of compiled models");
+    loaded.keep();
     add();
 }
 
@@ -167,9 +169,10 @@ void compile_and_load(const compile_request& wanted, const std::string& flags, c
                 cache.objection().empty() ? "" : message(" (", cache.objection(), ')'));
         if (!cache.objection().empty()) warn(cache.objection());
         tell(message("compiling ", wanted.source.name, " with ", wanted.method, ", by ", by->name()));
-        compile(wanted, *by, headers, folder);
+        compile(wanted, *by, headers, made_from, folder);
     };
-    if (!cache.obtain(made_from, make, &load)) cache.remember(wanted.source.text);
+    const auto load_it = [&](const std::string& path) { load(path, made_from); };
+    if (!cache.obtain(made_from, make, load_it)) cache.remember(wanted.source.text);
 }
 
 }  // namespace myriad::programs

@@ -31,10 +31,11 @@ std::size_t distance(std::string_view a, std::string_view b) {
     return least[a.size()][b.size()];
 }
 
-/// A product of numbers and pi, as "2 pi", "-3*pi/4"; nothing for another text.
+/// A product of numbers and pi, as "2 pi", "-3*pi/4"; nothing for another text. A factor without a sign before it is pi
+/// after a number, and not in a divisor, where "1 / 2 pi" could mean both.
 std::optional<double> multiple_of_pi(std::string_view text) {
     double product = 1;
-    bool has_pi = false, divides = false, wants_factor = true;
+    bool has_pi = false, divides = false, wants_factor = true, takes_pi = false;
     const char* at = text.data();
     const char* const end = at + text.size();
     if (at != end && *at == '-') {
@@ -51,17 +52,20 @@ std::optional<double> multiple_of_pi(std::string_view text) {
         }
         double factor = std::numbers::pi;
         if (end - at >= 2 && std::string_view(at, 2) == "pi") {
+            if (!wants_factor && !takes_pi) return {};
             has_pi = true;
             at += 2;
+            takes_pi = false;
         } else {
             const auto [rest, problem] = std::from_chars(at, end, factor);
             if (problem != std::errc() || !wants_factor) return {};
             at = rest;
+            takes_pi = !divides;
         }
         product = divides ? product / factor : product * factor;
         divides = wants_factor = false;
     }
-    if (!has_pi || wants_factor) return {};
+    if (!has_pi || wants_factor || !std::isfinite(product)) return {};
     return product;
 }
 
@@ -75,6 +79,7 @@ constexpr std::pair<host::cures, std::string_view> cures_in_files[] = {
     {use_doubles, "write real = \"double\""},
     {smaller_parts, "make chunk smaller"},
     {fewer_instances, "make chunk smaller"},
+    {allow_arithmetic, "give --any-arithmetic, or arithmetic = \"any\" under [store]"},
     {new_folder, "give another store and a smaller chunk"},
     {make_consistent, "give initial values that satisfy them"}};
 
@@ -84,6 +89,8 @@ std::string nearest_of(std::string_view name, const std::vector<std::string>& ch
     const std::string* nearest = nullptr;
     std::size_t least = std::max<std::size_t>(name.size() / 2, 1) + 1;
     for (const std::string& choice : choices) {
+        const std::size_t shorter = std::min(name.size(), choice.size());
+        if (std::max(name.size(), choice.size()) - shorter >= least) continue;  // that many insertions at the least
         const std::size_t d = distance(name, choice);
         if (d < least) {
             least = d;

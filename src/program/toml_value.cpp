@@ -4,6 +4,9 @@
 
 #include <algorithm>
 
+// Values within each other, each of which has at most the tables of a key with `most_parts` parts: together less than
+// the stack of a thread holds.
+#define TOML_MAX_NESTED_VALUES 32
 #define TOML_EXCEPTIONS 0
 #define TOML_ENABLE_FORMATTERS 0
 // Its assertions end a program that was built with them on files that are merely wrong, as "[#set]", which it reports
@@ -62,9 +65,45 @@ toml_value convert(const toml::node& node, const text_place& place, std::string_
     return made;
 }
 
+constexpr int most_parts = 64;
+
+int line_of(std::string_view text, std::size_t at) {
+    return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
+}
+
+/// Refuses keys of so many parts, a.b.c ..., that tables within tables would not fit on the stack. Of the text it reads
+/// strings and comments alone, as what is wrong otherwise is found later.
+void check_keys(std::string_view text, std::string_view file) {
+    int parts = 1;
+    for (std::size_t at = 0; at < text.size(); ++at) {
+        const char c = text[at];
+        if (c == '"' || c == '\'') {
+            const bool is_long = text.substr(at, 3) == std::string(3, c);
+            for (at += is_long ? 3 : 1; at < text.size(); ++at) {
+                if (text[at] == '\\' && c == '"')
+                    ++at;
+                else if (is_long ? text.substr(at, 3) == std::string(3, c) : text[at] == c)
+                    break;
+                else if (!is_long && text[at] == '\n')
+                    break;
+            }
+            if (is_long) at += 2;
+        } else if (c == '#') {
+            at = std::min(text.find('\n', at), text.size()) - 1;
+        } else if (c == '.') {
+            if (++parts > most_parts)
+                throw input_error(message(position({file, line_of(text, at), 1}), "a key has more than ", most_parts,
+                                          " parts with dots between them"));
+        } else if (c == '=' || c == ',' || c == '[' || c == '{' || c == '\n') {
+            parts = 1;
+        }
+    }
+}
+
 }  // namespace
 
 toml_value parse_toml(std::string_view text, std::string_view file) {
+    check_keys(text, file);
     const toml::parse_result parsed = toml::parse(text);
     if (!parsed) {
         const toml::parse_error& e = parsed.error();

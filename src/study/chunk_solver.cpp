@@ -54,7 +54,7 @@ void mark_missing_phases(const std::int32_t* phases_done, std::int64_t from_phas
 }  // namespace
 
 template <class R>
-void host_instances<R>::set(const axes& all, std::int64_t first) {
+void host_instances<R>::set(const axes& all, std::int64_t first, bool calls_users_function) {
     auto& data = this->data();
     if (!data.untouched) samples().clear();
     data.restart();
@@ -97,7 +97,7 @@ void host_instances<R>::set(const axes& all, std::int64_t first) {
             if (e.what.kind == t_end) all.fill(e, first, data.size, own.t_end.data());
         }
     }
-    model_.set_others(*memory_, first);
+    if (calls_users_function || !model_.sets_others()) model_.set_others(*memory_, first);
     if (!model_.generates_itself()) return;
     const host::called_model<R> model = model_.called_for(where_, {});
     // A GPU's kernel that was compiled at run time has no part for the host.

@@ -209,7 +209,9 @@ std::shared_ptr<const cuda::generation> device_solver<R>::make_generation() {
 template <class R>
 std::int64_t device_solver<R>::most_at_a_time() {
     start();
-    return std::max(instances_->affordable(), std::int64_t{1});
+    // A digit of an exact sum, of 64 bits, has room for 2^31 numbers of 32.
+    constexpr std::int64_t summable = std::int64_t{1} << 30;
+    return std::clamp(instances_->affordable(), std::int64_t{1}, summable);
 }
 
 template <class R>

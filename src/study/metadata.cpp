@@ -352,6 +352,16 @@ std::vector<statement> differences(const layout& stored, const layout& here) {
     return found;
 }
 
+bool differ_in_notes_alone(const layout& stored, const layout& here) {
+    const auto without_notes = [](layout content) {
+        json all = json::parse(content.description);
+        all.erase("notes");
+        content.description = all.dump();
+        return content;
+    };
+    return differences(without_notes(stored), without_notes(here)).empty();
+}
+
 std::vector<attribute> attributes_of(std::string_view description) {
     json flat = json::object();
     flatten("", json::parse(description), flat);

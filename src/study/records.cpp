@@ -3,7 +3,10 @@
 #include "myriad/study/records.hpp"
 
 #include <cstddef>
+#include <map>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "json_numbers.hpp"
 #include "myriad/host/core/error.hpp"
@@ -115,6 +118,25 @@ std::uint32_t result_of(std::string_view text, const group_checksum& group, std:
     return read_record("result", text, group, what, [&](const ordered_json& read) {
         require(read.at("variable") == variable, what, " is that of another variable");
         return checksum_in(read.at("crc32c"));
+    });
+}
+
+std::string model_json(const group_checksum& group, const model_behaviour& model) {
+    ordered_json all = ordered_json::object();
+    for (const auto& [name, places] : model.all()) {
+        all[name] = ordered_json::array();
+        for (const std::optional<double>& value : places) all[name].push_back(value ? number(*value) : ordered_json());
+    }
+    return sealed_record("model", group, {{"functions", all}});
+}
+
+model_behaviour model_of(std::string_view text, const group_checksum& group) {
+    return read_record("model", text, group, "the record of the model", [](const ordered_json& read) {
+        std::map<std::string, model_behaviour::values> all;
+        for (const auto& [name, places] : read.at("functions").items())
+            for (const ordered_json& value : places)
+                all[name].push_back(value.is_null() ? std::nullopt : std::optional(as_double(value)));
+        return model_behaviour(std::move(all));
     });
 }
 

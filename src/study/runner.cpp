@@ -169,6 +169,8 @@ private:
             work(d, mine);
         } catch (const given_up&) {  // by the next run it is done again
         } catch (const std::exception& e) {
+            // A GPU whose memory does not suffice for anything is none; the CPU's is all that there is.
+            if (d.where.which() != device::kind::cpu && is_out_of_memory(e)) drop(d, e);
             if (!d.failed) {
                 fail(std::current_exception());
             } else if (std::all_of(devices_.begin(), devices_.end(),
@@ -312,8 +314,10 @@ private:
                 const bool was_known = sharing_.is_known(d.number);
                 sharing_.measured(d.number, count, seconds);
                 if (!was_known) changed_.notify_all();
+                solved sum = made.how;
+                add(sum, how);
                 as_device(d, solver, [&] { take(solver, at, wanted, made); });
-                add(made.how, how);
+                std::swap(made.how, sum);
             } catch (const out_of_memory& e) {
                 halve(piece, count, solver, e.what());
                 continue;
@@ -330,16 +334,16 @@ private:
             if (wanted[q])
                 solver.copy(plan_.quantities[q],
                             &made.values[q][static_cast<std::size_t>(at * plan_.quantities[q].as.item_bytes())]);
-        std::vector<std::vector<double>> parts(plan_.reductions.size());
-        for (std::size_t r = 0; r < parts.size(); ++r) {
-            const auto part = plan_.reductions[r].start();
-            if (solver.reduce(r, *part)) parts[r] = part->partial();
+        // Beside what there is, which takes their place when nothing can fail any more.
+        std::vector<std::unique_ptr<reduction_state>> reduced(plan_.reductions.size());
+        for (std::size_t r = 0; r < reduced.size(); ++r) {
+            auto sum = plan_.reductions[r].start();
+            if (!solver.reduce(r, *sum)) continue;
+            if (made.reduced[r] != nullptr) sum->add(std::span<const double>(made.reduced[r]->partial()));
+            reduced[r] = std::move(sum);
         }
-        for (std::size_t r = 0; r < parts.size(); ++r) {
-            if (parts[r].empty()) continue;
-            if (made.reduced[r] == nullptr) made.reduced[r] = plan_.reductions[r].start();
-            made.reduced[r]->add(std::span<const double>(parts[r]));
-        }
+        for (std::size_t r = 0; r < reduced.size(); ++r)
+            if (reduced[r] != nullptr) std::swap(made.reduced[r], reduced[r]);
     }
     solved integrate(used_device& d, chunk_solver& solver, const std::function<void(std::int64_t)>& progress,
                      double& seconds) {
@@ -372,9 +376,12 @@ private:
         } catch (const handed_back&) {
             throw;
         } catch (const std::exception& e) {
-            if (on_device && !d.failed) drop(d, e);
+            if (on_device) drop(d, e);
             throw;
         }
+    }
+    static bool is_out_of_memory(const std::exception& e) {
+        return dynamic_cast<const out_of_memory*>(&e) != nullptr || dynamic_cast<const std::bad_alloc*>(&e) != nullptr;
     }
     static void add(solved& sum, const solved& more) {
         for (std::size_t s = 0; s < sum.by_status.size(); ++s) sum.by_status[s] += more.by_status[s];
@@ -454,10 +461,15 @@ private:
         }
         changed_.notify_all();
     }
+    /// Leaves a device out, once, whichever of its threads finds that it has failed.
     void drop(used_device& d, const std::exception& why) {
         const auto* const known = dynamic_cast<const error*>(&why);
-        d.why = known != nullptr ? known->said() : statement(why.what());
-        d.failed = true;
+        {
+            const std::lock_guard lock(mutex_);
+            if (d.failed) return;
+            d.why = known != nullptr ? known->said() : statement(why.what());
+            d.failed = true;
+        }
         sharing_.drop(d.number);
         warn(message("device ", d.where.name(),
                      " is left out, and its chunks are done by others, as it failed: ", why.what()));

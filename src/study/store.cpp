@@ -6,6 +6,7 @@
 #include <bit>
 #include <cerrno>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <map>
@@ -15,6 +16,7 @@
 
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/memory/memory_need.hpp"
+#include "myriad/study/model_behaviour.hpp"
 #include "myriad/study/store_files.hpp"
 #include "myriad/study/writer.hpp"
 
@@ -99,8 +101,28 @@ std::optional<found_group> whole_group(file_system& files, const std::string& fo
     return found;
 }
 
-void refuse_other(const layout& stored, const layout& here, const std::string& folder) {
-    const std::vector<statement> found = differences(stored, here);
+std::string model_path(const std::string& folder) { return folder + "/myriad/model.json"; }
+
+// What the model of a store does; nothing if that is not known.
+std::optional<model_behaviour> stored_model(file_system& files, const std::string& folder,
+                                            const group_checksum& group) {
+    try {
+        if (const auto text = read_text(files, model_path(folder))) return model_of(*text, group);
+    } catch (const file_error&) {
+        throw;
+    } catch (const error&) {  // `check_metadata` says so
+    }
+    return std::nullopt;
+}
+
+void refuse_other(file_system& files, const stored_group& stored, const layout& here, const model_behaviour* model,
+                  const std::string& folder) {
+    std::vector<statement> found = differences(stored.content, here);
+    // With other instances or options, functions give other values, too.
+    if (model != nullptr && (found.empty() || differ_in_notes_alone(stored.content, here))) {
+        if (const auto there = stored_model(files, folder, stored.checksum))
+            for (statement& one : model->differences_from(*there)) found.push_back(std::move(one));
+    }
     if (found.empty()) return;
     statement list;
     for (std::size_t i = 0; i < found.size() && i < 10; ++i) list = statement_of(list, "\n  ", found[i]);
@@ -108,6 +130,47 @@ void refuse_other(const layout& stored, const layout& here, const std::string& f
     host::refuse({"the folder ", folder, " holds the results of another study, which differs in", list,
                   host::cure_begins{"\n"}, "give another ", host::named_option("store", "folder"),
                   ", or the same study"});
+}
+
+// What is left to be written.
+struct room {
+    std::int64_t chunks;
+    double bytes = 0;
+    bool has_coordinates = false;
+
+    explicit room(std::int64_t missing) : chunks(missing) { add(1, chunks); }  // records, of a block each
+    void add(std::int64_t file_bytes, std::int64_t count) {
+        bytes += std::ceil(static_cast<double>(file_bytes) / 4096) * 4096 * static_cast<double>(count);
+    }
+    void add_coordinates(std::int64_t file_bytes, std::int64_t count) {
+        add(file_bytes, count);
+        has_coordinates = true;
+    }
+    void require_free(file_system& files, const std::string& folder) const {
+        std::string place = folder;
+        std::int64_t size = 0, free = 0;
+        while (files.size(place, size) < 0 && folder_of(place) != place) {
+            if (errno != ENOENT) throw file_error("looking for", place, errno);
+            place = folder_of(place);
+        }
+        if (files.free_bytes(place, free) < 0) throw file_error("asking for the free space of", place, errno);
+        const auto [need, have] = host::bytes_texts(bytes, static_cast<double>(free));
+        require(bytes <= static_cast<double>(free), "the ", chunks, " chunks ",
+                has_coordinates ? "and the coordinates " : "", "that are left take ", need, ", and the disk of ",
+                host::named_option("store", folder), " has ", have, " free", host::cure,
+                "free space, give a folder on a larger disk, or keep less");
+    }
+};
+// All of a store that is not there yet.
+room needed_room(const layout& content) {
+    room all(content.chunks());
+    for (const coordinate& c : content.coordinates) {
+        const array_shape shape = shape_of(content, c);
+        all.add_coordinates(shape.file_bytes(), shape.files());
+    }
+    for (const variable& v : content.variables)
+        all.add(shape_of(content, v).file_bytes(), v.extent == along::nothing ? 1 : all.chunks);
+    return all;
 }
 
 // Again if another process took this one for dead and removed its temporary files, as often as that happens; but not if
@@ -263,6 +326,14 @@ struct store::implementation : store_files {
             if (self) files.unlink(own("arithmetic.json"));
         }
         try {
+            if (const auto text = read_text(files, model_path(folder))) model_of(*text, group.checksum);
+        } catch (const file_error&) {
+            throw;
+        } catch (const error& failure) {
+            problems.push_back({-1, "myriad/model.json", failure.what()});
+            if (self) files.unlink(model_path(folder));
+        }
+        try {
             places->read_record();
         } catch (const file_error&) {
             throw;
@@ -273,6 +344,20 @@ struct store::implementation : store_files {
         if (!self) return;
         make_folder(files, own("claims"));
         make_folder(files, own("results"));
+    }
+
+    // Keeps what the model does, if that is not there yet.
+    void keep_model(const model_behaviour* model, const layout& wanted) {
+        if (model == nullptr || model->empty()) return;
+        if (!exists(model_path(folder))) {
+            new_file made(files, self->temporary());
+            made.write(model_json(group.checksum, *model));
+            made.finish();
+            const bool is_first = made.link_to(model_path(folder));
+            sync_folder(files, own(""));
+            if (is_first) return;
+        }
+        refuse_other(files, group, wanted, model, folder);  // another process may have been faster
     }
 
     // That which the store began with; nothing if it is not known.
@@ -293,9 +378,10 @@ struct store::implementation : store_files {
                                             begun_with->host, ", and ", here.host, " has ", here.text(),
                                             ": results differ in their last digits, and in more where the model is "
                                             "chaotic");
-        require(others == other_arithmetic::warn, differs,
-                "; set MYRIAD_INSTRUCTION_SET to the same on all machines, and use the same compiler and libraries, or "
-                "allow this by the option others of the store");
+        require(
+            others == other_arithmetic::warn, differs,
+            "; set MYRIAD_INSTRUCTION_SET to the same on all machines, and use the same compiler and libraries, or ",
+            host::cures::allow_arithmetic);
         const std::lock_guard lock(mutex);
         if (std::find(warnings.begin(), warnings.end(), differs) == warnings.end()) warnings.push_back(differs);
     }
@@ -474,35 +560,18 @@ struct store::implementation : store_files {
 
     // Before anything is written, and again when chunks were put back.
     void check_space() const {
-        std::int64_t left = 0, free = 0;
-        const auto add = [&](std::int64_t file_bytes, std::int64_t count) {
-            std::int64_t bytes = 0;
-            if (__builtin_mul_overflow((file_bytes + 4095) / 4096 * 4096, count, &bytes) ||
-                __builtin_add_overflow(left, bytes, &left))
-                left = std::numeric_limits<std::int64_t>::max();
-        };
-        bool coordinates_left = false;
+        room left{content.chunks() - finished_count};
         for (const stored_array& array : coordinates)
-            for (std::int64_t file = 0; file < array.shape.files(); ++file) {
-                if (has_length(path_of(array, file), array.shape.file_bytes())) continue;
-                add(array.shape.file_bytes(), 1);
-                coordinates_left = true;
-            }
-        const std::int64_t missing = content.chunks() - finished_count;
+            for (std::int64_t file = 0; file < array.shape.files(); ++file)
+                if (!has_length(path_of(array, file), array.shape.file_bytes()))
+                    left.add_coordinates(array.shape.file_bytes(), 1);
         for (std::size_t v = 0; v < variables.size(); ++v) {
             if (content.variables[v].extent != along::nothing)
-                add(variables[v].shape.file_bytes(), missing);
+                left.add(variables[v].shape.file_bytes(), left.chunks);
             else if (!exists(path_of(variables[v], 0)))
-                add(variables[v].shape.file_bytes(), 1);
+                left.add(variables[v].shape.file_bytes(), 1);
         }
-        add(1, missing);  // their records, of a block each
-        std::string place = folder;
-        while (!exists(place) && folder_of(place) != place) place = folder_of(place);
-        if (files.free_bytes(place, free) < 0) throw file_error("asking for the free space of", place, errno);
-        const auto [need, have] = host::bytes_texts(static_cast<double>(left), static_cast<double>(free));
-        require(left <= free, "the ", missing, " chunks ", coordinates_left ? "and the coordinates " : "",
-                "that are left take ", need, ", and the disk of ", host::named_option("store", folder), " has ", have,
-                " free", host::cure, "free space, give a folder on a larger disk, or keep less");
+        left.require_free(files, folder);
     }
 
     // -----------------------------------------------------------------------------------------------------------------
@@ -624,16 +693,18 @@ store::~store() = default;
 store store::create_or_resume(const std::string& given, const layout& wanted, const store_options& options) {
     wanted.check();
     const std::string folder = absolute(given);
-    require(options.expiry.count() > 0, "the expiry of claims is ", options.expiry.count(), " ms (must be positive)",
-            host::cure, "give seconds to minutes");
+    constexpr std::chrono::milliseconds never = std::chrono::hours(24 * 365 * 100);
+    require(options.expiry.count() > 0 && options.expiry <= never, "the expiry of claims is ", options.expiry.count(),
+            " ms (must be positive, and at most ", never.count(), ')', host::cure, "give seconds to minutes");
     file_system& files = options.files ? *options.files : file_system::real();
     std::optional<found_group> there = find_group(files, folder);
     const bool is_new = !there;
-    if (there) refuse_other(there->group.content, wanted, folder);
+    if (there) refuse_other(files, there->group, wanted, options.model.get(), folder);
     // All that can be refused before anything is written.
     if (is_new) {
         std::string text = group_json(wanted);
         there = found_group{group_of(text, group_path(folder)), text, ""};
+        needed_room(there->group.content).require_free(files, folder);  // before memory is taken for every chunk
     }
     auto made = std::make_unique<implementation>(files, folder, *there);
     made->refresh();
@@ -665,7 +736,7 @@ store store::create_or_resume(const std::string& given, const layout& wanted, co
             there = find_group(files, folder);
             require(there.has_value(), host::named_option("store", "the folder"), " ", folder,
                     " was removed while a study started there");
-            refuse_other(there->group.content, wanted, folder);
+            refuse_other(files, there->group, wanted, options.model.get(), folder);
             auto self = std::move(made->self);
             made = std::make_unique<implementation>(files, folder, *there);
             made->self = std::move(self);
@@ -687,6 +758,7 @@ store store::create_or_resume(const std::string& given, const layout& wanted, co
         made->check_chunks(options.check == resume_check::checksums, made->found);
         made->check_rest(options.check == resume_check::checksums, made->found);
         made->count_all(&made->found);
+        made->keep_model(options.model.get(), wanted);
         made->check_arithmetic(options);
     };
     repeat_if_lost(*made->self, begin, may_write);
@@ -859,7 +931,11 @@ void store::read(std::string_view name, std::int64_t first, std::int64_t count, 
     for (std::int64_t at = first; at < first + count;) {
         const std::int64_t file = at / per_file, begin = at - file * per_file;
         const std::int64_t end = std::min(per_file, begin + first + count - at);
-        if (!(extent == along::nothing ? s.has_result(v) : s.is_finished(file)))
+        const bool is_there = extent == along::nothing ? s.has_result(v) : s.is_finished(file);
+        require(is_there || extent != along::nothing || !complete(), name, " is not there, though all instances of ",
+                s.folder, " are done: its files were removed, or another process is about to write them", host::cure,
+                "start the study again, which computes it from what is stored");
+        if (!is_there)
             fill(shape.type, to, bytes_of((end - begin) * item) / size_of(shape.type));
         else if (extent == along::nothing)
             s.read_result(v, to);

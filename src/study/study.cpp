@@ -232,6 +232,7 @@ std::unique_ptr<studies::result_keeper> any_study::open_store(const planned_run&
     studies::store_options options = store_options_;
     for (const device& d : planned.settings.devices)
         if (d.which() == device::kind::cpu) options.computed_by = model_->arithmetic_on(d);
+    options.model = model_->behaviour(planned.plan, planned.settings.devices);
     auto keeper = studies::keep_in_store(folder_, planned.plan.content, options, chunk_counter);
     check_memory(planned.host_bytes, keeper->content(), planned.settings.devices,
                  statement_of("use fewer devices, or ", host::cures::new_folder));

@@ -388,8 +388,8 @@ private:
     void add_status() {
         std::vector<std::int64_t> values;
         std::string meanings;
-        constexpr int those_of_results = static_cast<int>(myriad::status::interrupted);  // chunks given up are not kept
-        for (int s = 0; s < those_of_results; ++s) {
+        for (int s = 0; s < status_count; ++s) {
+            if (static_cast<myriad::status>(s) == myriad::status::interrupted) continue;  // such chunks are not kept
             values.push_back(s);
             meanings += message(s == 0 ? "" : " ", myriad::name_of(static_cast<myriad::status>(s)));
         }

@@ -15,12 +15,25 @@
 // expect: rhs has a wrong signature: it must be
 // case: rhs_with_a_result_of_the_wrong_size
 // expect: rhs has a wrong signature: it must be
+// case: rhs_with_the_inputs_before_the_states
+// expect: the arguments of rhs are exchanged: they are the time, the states and the inputs, in this order
+// case: rhs_with_the_inputs_before_the_states_of_any_type
+// expect: a state is looked for among the inputs: the arguments of rhs, events and observe are the time, the states
+// case: sine_of_the_standard_library
+// expect: this model calls std::sin, .*: call myriad::sin
+// case: power_of_the_standard_library
+// expect: this model calls std::pow, .*: call myriad::pow
+// case: maximum_of_the_standard_library
+// expect: this model branches on its state: .*for std::min and std::max myriad::min and myriad::max
 // case: branch_on_the_state
 // expect: this model branches on its state: use myriad::select.*scalar_only
 // case: conditional_expression_on_the_state
 // expect: this model branches on its state: use myriad::select.*scalar_only
 // SPDX-License-Identifier: MIT
 // Right-hand sides that the loop cannot call, or not for a pack of instances, which has no single truth value.
+#include <algorithm>
+#include <cmath>
+
 #include "myriad/instantiate.hpp"
 #include "myriad/model.hpp"
 
@@ -58,6 +71,16 @@ private:
     MYRIAD_FUNCTION static myriad::vec<R, 2> rhs(auto, const myriad::vec<R, 1>& y, const auto& p) {
         return myriad::vec<R, 2>{-(p[k] * y[0]), y[0]};
     }
+#elif defined CASE_rhs_with_the_inputs_before_the_states
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, 1> rhs(auto, const auto& p, const myriad::vec<R, 1>& y) {
+        return myriad::vec<R, 1>{-(p[k] * y[x])};
+    }
+#elif defined CASE_rhs_with_the_inputs_before_the_states_of_any_type
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, 1> rhs(auto, const auto& p, const auto& y) {
+        return myriad::vec<R, 1>{-(p[k] * y[x])};
+    }
 #elif !defined CASE_model_without_rhs
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, 1> rhs(auto, const myriad::vec<R, 1>& y, const auto& p) {
@@ -66,6 +89,15 @@ private:
 #endif
 #ifdef CASE_conditional_expression_on_the_state
         return myriad::vec<R, 1>{y[0] > R(0) ? -(p[k] * y[0]) : R(0)};
+#endif
+#ifdef CASE_sine_of_the_standard_library
+        return myriad::vec<R, 1>{std::sin(y[0])};
+#endif
+#ifdef CASE_power_of_the_standard_library
+        return myriad::vec<R, 1>{std::pow(y[0], 2)};
+#endif
+#ifdef CASE_maximum_of_the_standard_library
+        return myriad::vec<R, 1>{std::max(y[0], R(1))};
 #endif
         return myriad::vec<R, 1>{-(p[k] * y[0])};
     }

@@ -68,7 +68,8 @@ TEST_CASE("numbers are numbers, integers, or multiples of pi") {
     CHECK(single("'pi / 2'").number() == pi / 2);
     CHECK(single("'0.5e1 pi'").number() == 5 * pi);
     CHECK(single("'1 / pi'").number() == 1 / pi);
-    for (const char* const wrong : {"'2'", "'2 pie'", "'pi 2 3'", "'pi/'", "'*pi'", "''", "'2 * / pi'", "'- pi -'"})
+    for (const char* const wrong : {"'2'", "'2 pie'", "'pi 2 3'", "'pi/'", "'*pi'", "''", "'2 * / pi'", "'- pi -'",
+                                    "'2 pi pi'", "'1 / 2 pi'", "'1/0 pi'", "'-pi/0'", "'1e308*1e308 pi'"})
         CHECK_THROWS_WITH(single(wrong).number(), Contains("a.toml:1:1: v: must be a number, and is the string "));
     CHECK_THROWS_WITH(single("true").number(), "a.toml:1:1: v: must be a number, and is a boolean");
 }

@@ -77,3 +77,15 @@ TEST_CASE("what is no TOML is refused with its place") {
     CHECK_THROWS_WITH(parse("a = 1\na = 2"), StartsWith("a.toml:2:") && Contains("a"));
     CHECK_THROWS_AS(parse("= 1"), input_error);
 }
+
+TEST_CASE("a key of a hundred thousand parts is refused, and does not end the program") {
+    std::string key = "a";
+    for (int i = 0; i < 100'000; ++i) key += " . a";
+    CHECK_THROWS_WITH(parse("k = 1\n" + key + " = 1"), StartsWith("a.toml:2:1: a key has more than 64 parts"));
+    CHECK_THROWS_WITH(parse('[' + key + ']'), Contains("a key has more than 64 parts"));
+    std::string nested = "1";
+    for (int i = 0; i < 1000; ++i) nested = "{a.a.a.a = " + nested + '}';
+    CHECK_THROWS(parse("k = " + nested));
+    const std::string dots(1000, '.');
+    CHECK_NOTHROW(parse("k = '" + dots + "'  # " + dots + "\nl = \"\"\"\n" + dots + "\"\n\"\"\"\nm = [0.1, 0.2]"));
+}

@@ -3,9 +3,12 @@
 // GPUs are simulated.
 #include <algorithm>
 #include <atomic>
+#include <chrono>
+#include <cstddef>
 #include <cstring>
 #include <functional>
 #include <mutex>
+#include <new>
 #include <string>
 #include <thread>
 #include <vector>
@@ -30,7 +33,8 @@ using event = std::function<void(const device& where, std::int64_t first, std::i
 /// x = 2 k.
 class doubling final : public any_model {
 public:
-    explicit doubling(event integrate) : integrate_(std::move(integrate)) {}
+    explicit doubling(event integrate, std::function<void()> reduce = {})
+        : integrate_(std::move(integrate)), reduce_(std::move(reduce)) {}
     const component_names& names() const override { return names_; }
     std::string method() const override { return "none"; }
     element real() const override { return element::f64; }
@@ -38,9 +42,26 @@ public:
     double bytes_per_instance(const options&) const override { return 16; }
     arithmetic arithmetic_on(const device&) const override { return {}; }
     std::string generator() const override { return {}; }
-    std::unique_ptr<chunk_solver> make_solver(const study_plan& plan, const device&) const override {
+    std::unique_ptr<chunk_solver> make_solver(const study_plan& plan, const device& on) const override {
         struct solver final : chunk_solver {
-            solver(const study_plan& p, const event& e) : plan(p), integrated(e) {}
+            solver(const study_plan& p, const event& e, const std::function<void()>& r)
+                : plan(p), integrated(e), reduced(r) {}
+            bool on_device() const override { return reduced != nullptr; }
+            bool reduce(std::size_t number, reduction_state& to) override {
+                if (!reduced) return false;
+                reduced();
+                const auto& of = plan.asked.reductions[number].definition().inputs.front();
+                for (const quantity& q : plan.quantities) {
+                    if (q.as.name != of) continue;
+                    std::vector<std::byte> values(k.size() * sizeof(double)), how(k.size());
+                    copy(q, values.data());
+                    std::fill(how.begin(), how.end(), static_cast<std::byte>(status::success));
+                    const variable statuses{.name = "status", .type = element::u8, .attributes = {}};
+                    const std::vector<chunk_columns::column> columns{{&q.as, values}, {&statuses, how}};
+                    to.add(chunk_columns(first, static_cast<std::int64_t>(k.size()), columns));
+                }
+                return true;
+            }
             void prepare(std::int64_t from, std::int64_t count) override {
                 first = from;
                 k.resize(static_cast<std::size_t>(count));
@@ -68,15 +89,18 @@ public:
 
             const study_plan& plan;
             const event& integrated;
+            const std::function<void()> reduced;
             std::int64_t first = 0;
             std::vector<double> k;
         };
-        return std::make_unique<solver>(plan, integrate_);
+        const bool reduces = on.which() == device::kind::cuda && reduce_;
+        return std::make_unique<solver>(plan, integrate_, reduces ? reduce_ : std::function<void()>());
     }
 
 private:
     component_names names_{"doubling", {{component_kind::state, 0, "x"}, {component_kind::parameter, 0, "k"}}};
     event integrate_;
+    std::function<void()> reduce_;  // on a GPU, before it does so
 };
 
 /// A run of 1000 instances.
@@ -85,19 +109,26 @@ struct test_run {
     event integrate = [](auto&&...) {};
     std::int64_t chunk = 30;
     std::function<void(result_keeper&)> before = [](result_keeper&) {};
+    std::function<void()> reduce = {};  // on a GPU
+    std::function<void()> start = {};   // of the second reduction
     std::vector<std::string> warnings = {};
     std::function<bool()> stops = {};
     std::chrono::milliseconds patience = std::chrono::seconds(10);
 
     run_outcome run() {
-        const doubling model(integrate);
+        const doubling model(integrate, reduce);
         axes a(model.names());
         a.add("k", linspace(0, 999, 1000));
         for (const char* name : {"x", "t_begin", "t_end"}) a.set(name, 0);
         study_request asked{"none", element::f64, a, {}, {}, {}, {}, {}, {}, {}};
         asked.keep.end = {"x"};
-        asked.reductions = {mean_of("x_end")};
+        asked.reductions = {histogram_of("x_end", linspace(0, 2000, 2)), mean_of("x_end")};
         study_plan plan = plan_study(asked);
+        if (start)
+            plan.reductions[1].start = [call = start, make = plan.reductions[1].start] {
+                call();
+                return make();
+            };
         plan.content.chunk = chunk;
         const auto keeper = keep_in_memory(plan.content);
         before(*keeper);
@@ -115,6 +146,9 @@ struct test_run {
             double mean = 0;
             keeper->kept()->read("x_end_mean", 0, 1, &mean);
             CHECK(mean == 999);
+            std::int64_t counted = 0;
+            keeper->kept()->read("x_end_histogram", 0, 1, &counted);
+            CHECK(counted == 1000);
         }
         return outcome;
     }
@@ -218,6 +252,49 @@ TEST_CASE("Where memory is short, fewer instances are integrated at a time", "[r
     t.integrate = [](auto&&...) { throw std::bad_alloc(); };
     CHECK_THAT(t.message(), Contains("out of memory"));
 }
+TEST_CASE("A GPU without free memory is left out where there is a CPU beside it", "[runner]") {
+    test_run t;
+    t.devices = {device::cuda(), device::cpu(1)};
+    t.integrate = [](const device& where, std::int64_t, std::int64_t) {
+        if (is_gpu(where)) throw out_of_memory("out of device memory");
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    };
+    CHECK(t.run().complete);
+    REQUIRE(!t.warnings.empty());
+    const auto left_out = [](const std::string& text) { return text.find("is left out") != text.npos; };
+    CHECK(std::count_if(t.warnings.begin(), t.warnings.end(), left_out) == 1);
+
+    t.devices = {device::cuda()};
+    CHECK_THAT(t.message(), Contains("no device is left") && Contains("out of device memory"));
+}
+TEST_CASE("Both threads of a device that fails find it, and it is left out once", "[runner]") {
+    for (int repetition = 0; repetition < 20; ++repetition) {
+        std::atomic<int> at_once{0};
+        test_run t;
+        t.devices = {device::cuda(), device::cpu(1)};
+        t.reduce = [&] {
+            ++at_once;  // the threads of the GPU fail together
+            const auto begin = std::chrono::steady_clock::now();
+            while (at_once < 2 && std::chrono::steady_clock::now() - begin < std::chrono::milliseconds(200))
+                std::this_thread::yield();
+            throw error("unspecified launch failure");
+        };
+        CHECK(t.run().complete);
+        CHECK(t.warnings.size() == 1);
+    }
+}
+TEST_CASE("Where memory is short in the middle of reductions, nothing is reduced twice", "[runner]") {
+    for (int fails = 1; fails <= 6; ++fails) {
+        std::atomic<int> calls{0};
+        test_run t;
+        t.devices = {device::cuda()};
+        t.reduce = [] {};
+        t.start = [&] {
+            if (++calls == fails) throw std::bad_alloc();
+        };
+        CHECK(t.run().complete);
+    }
+}
 TEST_CASE("A result that cannot be kept ends the run", "[runner]") {
     test_run t;
     t.before = [](result_keeper& keeper) { (void)keeper.claim_next(); };
@@ -278,4 +355,16 @@ TEST_CASE("A study on a GPU that is lost has the same bits as on the CPU", "[run
     const auto expected = run({device::cpu(1)}, -1);
     CHECK(run({device::cuda()}, -1) == expected);
     CHECK(run({device::cuda(), device::cpu(1)}, 1) == expected);
+}
+TEST_CASE("No GPU reduces more instances at a time than the digits of a sum have room for", "[runner]") {
+    const model_of<studied::lorenz, runge_kutta_4, float> model;
+    axes a(model.names());
+    for (const char* name : {"x", "y", "z", "r", "t_begin", "t_end"}) a.set(name, 1);
+    a.repeat(std::int64_t{1} << 40);
+    study_request asked{model.method(), model.real(), a, {}, {}, {}, {}, {}, {}, {}};
+    asked.options.step = 0.01;
+    const study_plan plan = plan_study(asked);
+    const std::int64_t before = simulated::the_gpu.memory = std::int64_t{1} << 58;
+    CHECK(model.make_device_solver(plan, device::cuda())->most_at_a_time() == std::int64_t{1} << 30);
+    simulated::the_gpu.memory = before;
 }

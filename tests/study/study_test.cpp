@@ -6,7 +6,9 @@
 #include <cstddef>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <random>
 #include <string>
@@ -15,6 +17,7 @@
 #include <fcntl.h>
 #include <myriad/myriad.hpp>
 #include <myriad/study.hpp>
+#include <myriad/study/sealed_text.hpp>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -283,6 +286,34 @@ TEST_CASE("A function may generate instances instead of axes", "[study]") {
     CHECK(generated.run().values("highest_end") == expected);
     CHECK(both.run().values("highest_end")[20] == Approx(expected[20]).epsilon(1e-12));  // of x up to a rounding
     CHECK(generated.run().content().axes[0].name == "draw");
+}
+
+TEST_CASE("A study in a folder is not gone on with by a model that does something else", "[study]") {
+    const folder here;
+    const auto run = [&] {
+        study<duffing, method> s;
+        describe(s);
+        s.store(here.store());
+        return message_of([&] { s.run(); });
+    };
+    const auto text_of = [](const std::string& path) {
+        std::ifstream file(path);
+        return std::string(std::istreambuf_iterator<char>(file), {});
+    };
+    CHECK(run() == "nothing was thrown");
+    // As if the model had been edited since.
+    const std::string path = here.store() + "/myriad/model.json";
+    const std::string kept = text_of(path);
+    std::string edited = kept;
+    const std::size_t value = edited.find('[', edited.find("the right-hand side of state.v")) + 1;
+    edited.replace(value, edited.find(',', value) - value, "12345");
+    const std::string checksum = studies::seal_of(edited).stored;
+    edited.replace(edited.rfind(checksum), checksum.size(), studies::unsealed);
+    std::ofstream(path) << studies::sealed(edited);
+    CHECK_THAT(run(), Contains("another study") && Contains("right-hand side of state.v: 12345 in the store, "));
+    std::ofstream(path) << "damaged";
+    CHECK(run() == "nothing was thrown");  // and it is written again
+    CHECK(text_of(path) == kept);
 }
 
 namespace {

@@ -85,6 +85,32 @@ struct straight : crossed<n> {
     }
 };
 
+/// x' = y and 0 = cubic y^3 + quadratic y^2 + linear y - level. The level is another one from t = 1 on, and where x
+/// comes to 1/2.
+struct levelled {
+    enum state { x, y, n_state };
+    enum parameter { cubic, quadratic, linear, from_1_on, from_event_on, n_parameter };
+    enum accessory { level, n_accessory };
+    enum event { reached, n_event };
+    enum stop { rises, n_stop };
+    static constexpr myriad::mass_entry mass_matrix[] = {{x, x, 1}};
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& s, const auto& p) {
+        return {s[y], ((p[cubic] * s[y] + p[quadratic]) * s[y] + p[linear]) * s[y] - p.accessory[level]};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto, const myriad::vec<R, n_state>& s, const auto&) {
+        return myriad::vec<R, n_event>{s[x] - 0.5};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static R stop_time(int, int number, const auto&) {
+        return number == 0 ? R(1) : myriad::infinity_of<R>;
+    }
+    MYRIAD_FUNCTION static void after_stop(int, int, auto& lane) { lane.accessory[level] = lane.parameter[from_1_on]; }
+    MYRIAD_FUNCTION static void after_event(int, auto& lane) { lane.accessory[level] = lane.parameter[from_event_on]; }
+};
+
 /// A pendulum in Cartesian coordinates with the force of its rod, which the length determines only after two
 /// differentiations: of index three.
 struct pendulum {

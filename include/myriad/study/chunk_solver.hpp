@@ -67,6 +67,11 @@ public:
     }
     /// What the last digits depend on there.
     virtual arithmetic arithmetic_on(const device& where) const = 0;
+    /// What it does, for a store to tell it from others; null where nothing can be asked.
+    virtual std::shared_ptr<const model_behaviour> behaviour(const study_plan& /*plan*/,
+                                                             const std::vector<device>& /*devices*/) const {
+        return nullptr;
+    }
     /// What stands for the generator of instances; empty if there is none.
     virtual std::string generator() const = 0;
     /// Whether that is the model's own.

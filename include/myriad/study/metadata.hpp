@@ -58,6 +58,8 @@ bool same_json(std::string_view a, std::string_view b);
 /// What differs between the layout in a store and another, as "options.relative_tolerance: 1e-09 in the store, 1e-08
 /// here", whose subject is the option. Chunk sizes and attributes may differ.
 std::vector<statement> differences(const layout& stored, const layout& here);
+/// Whether that is nothing but notes, which stand for the model's source, too.
+bool differ_in_notes_alone(const layout& stored, const layout& here);
 
 /// The global attributes that an exported file gets: the entries of the description, with dots in their names.
 std::vector<attribute> attributes_of(std::string_view description);

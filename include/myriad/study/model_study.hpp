@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "myriad/host/checks/behaviour.hpp"
 #include "myriad/host/core/declarations.hpp"
 #include "myriad/host/ensemble/ensemble.hpp"
 #include "myriad/host/model/numbering.hpp"
@@ -72,6 +73,9 @@ public:
     }
     std::unique_ptr<instance_memory<R>> allocate(const device&, std::int64_t size) const override {
         return std::make_unique<memory>(size);
+    }
+    detail::behaviour_function<R> behaviour_for(const device&) const override {
+        return &detail::show_behaviour<Model, R>;
     }
     std::string compiler_for(const device&) const override { return compiler_name; }
     void set_others(instance_memory<R>& instances, std::int64_t first) const override {

@@ -11,6 +11,7 @@
 
 #include "myriad/kernel/core/abi.hpp"
 #include "myriad/study/layout.hpp"
+#include "myriad/study/model_behaviour.hpp"
 #include "myriad/study/store.hpp"
 
 namespace myriad::studies::inline MYRIAD_ABI {
@@ -38,6 +39,11 @@ coordinate_checksums coordinates_of(std::string_view text, const group_checksum&
 std::string result_json(const group_checksum& group, std::string_view variable, std::uint32_t checksum);
 /// Throws `error` if the text is no such record of this variable.
 std::uint32_t result_of(std::string_view text, const group_checksum& group, std::string_view variable);
+
+/// What the model of a store does.
+std::string model_json(const group_checksum& group, const model_behaviour& model);
+/// The same. Throws `error` if it is damaged, or of another store.
+model_behaviour model_of(std::string_view text, const group_checksum& group);
 
 /// The arithmetic that a store began with.
 std::string arithmetic_json(const group_checksum& group, const arithmetic& a);

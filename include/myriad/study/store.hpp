@@ -22,6 +22,7 @@ namespace myriad {
 namespace studies::inline MYRIAD_ABI {
 
 class file_system;
+class model_behaviour;
 
 /// The values of a variable for one chunk.
 struct column {
@@ -103,6 +104,8 @@ struct store_options {
     resume_check check = resume_check::sizes;  ///< what is looked at when a study goes on
     arithmetic computed_by = {};  ///< this process'; compared if it has an instruction set and chunks are left
     other_arithmetic others = other_arithmetic::refuse;  ///< what is done where the digits may differ
+    /// What the study's model does; compared with that of the store, if it is given.
+    std::shared_ptr<const model_behaviour> model = nullptr;
     /// For tests: what files are written and read by; null: the operating system.
     file_system* files = nullptr;
 };

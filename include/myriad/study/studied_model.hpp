@@ -13,6 +13,7 @@
 
 #include "myriad/host/backend/backend.hpp"
 #include "myriad/host/backend/device.hpp"
+#include "myriad/host/checks/shown_values.hpp"
 #include "myriad/host/ensemble/ensemble_data.hpp"
 #include "myriad/host/ensemble/sample_data.hpp"
 #include "myriad/host/options/options.hpp"
@@ -44,6 +45,8 @@ public:
     std::unique_ptr<chunk_solver> make_solver(const study_plan& plan, const device& where) const final;
     std::unique_ptr<chunk_solver> make_device_solver(const study_plan& plan, const device& where) const final;
     arithmetic arithmetic_on(const device& where) const final;
+    std::shared_ptr<const model_behaviour> behaviour(const study_plan& plan,
+                                                     const std::vector<device>& devices) const final;
 
     /// The model and its kernel for that device.
     virtual host::called_model<R> called_for(const device& where, const options& o) const = 0;
@@ -51,6 +54,8 @@ public:
     virtual std::unique_ptr<instance_memory<R>> allocate(const device& where, std::int64_t size) const = 0;
     /// The options of a study as calls on that device take them.
     virtual options options_for(const device& /*where*/, options o) const { return o; }
+    /// What calls the model's functions in memory for that device; null if that cannot be.
+    virtual detail::behaviour_function<R> behaviour_for(const device& where) const = 0;
     /// The compiler of the kernel for that device.
     virtual std::string compiler_for(const device& where) const = 0;
     /// Sets what neither axes nor the model set; `first` is the number of the first instance in the study.
@@ -80,8 +85,9 @@ public:
     host::ensemble_data<R>& data() { return memory_->data(); }
     host::sample_data<R>& samples() { return memory_->samples(); }
     host::record_data<R>& records() { return records_; }
-    /// Sets all to what axes and generators say; `first` is the number of the first one in the study.
-    void set(const axes& all, std::int64_t first);
+    /// Sets all to what axes and generators say, or, without a user's function, what that does not change; `first` is
+    /// the number of the first one in the study.
+    void set(const axes& all, std::int64_t first, bool calls_users_function = true);
     /// Integrates them and keeps the records.
     report_of<R> solve(const device& where, const options& o);
 

@@ -3,10 +3,13 @@
 #include "myriad/host/checks/data_check.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <sstream>
+#include <string>
 #include <type_traits>
 #include <vector>
 
@@ -238,6 +241,32 @@ void data_check<R>::check(const component_label& label, const R* values, limit m
             values[first], ')', cure, advice});
 }
 
+namespace {
+
+/// Times that differ by no more than this count as the same instant, as they do in kernels.
+template <class R>
+R same_instant(R time) {
+    return R(16) * std::numeric_limits<R>::epsilon() * std::abs(time);
+}
+
+/// Sample times and the ends of a domain as texts, with so many digits that those which differ look different.
+std::array<std::string, 4> told_apart(const std::array<double, 4>& times) {
+    for (int digits = 9;; ++digits) {
+        std::array<std::string, 4> texts;
+        for (std::size_t k = 0; k < 4; ++k) {
+            std::ostringstream text;
+            text.precision(digits);
+            text << times[k];
+            texts[k] = text.str();
+        }
+        const bool alike =
+            (texts[0] == texts[2] && times[0] != times[2]) || (texts[1] == texts[3] && times[1] != times[3]);
+        if (!alike || digits >= std::numeric_limits<double>::max_digits10) return texts;
+    }
+}
+
+}  // namespace
+
 template <class R>
 void check_sample_times(const ensemble_data<R>& e, const options& o, std::int64_t count) {
     const sample_options& samples = o.samples;
@@ -264,8 +293,9 @@ void check_sample_times(const ensemble_data<R>& e, const options& o, std::int64_
         const bool fine = all_parts(common ? 1 : count, [=](std::int64_t first, std::int64_t last) {
             bool all = true;
             for (std::int64_t i = first; i < last; ++i) {
-                const bool forwards = (begin[i] <= from) & (from <= to) & (to <= end[i]);
-                const bool backwards = (begin[i] >= from) & (from >= to) & (to >= end[i]);
+                const R at_begin = same_instant(begin[i]), at_end = same_instant(end[i]);
+                const bool forwards = (begin[i] - at_begin <= from) & (from <= to) & (to <= end[i] + at_end);
+                const bool backwards = (begin[i] + at_begin >= from) & (from >= to) & (to >= end[i] - at_end);
                 all &= evenly ? std::abs(end[i] - begin[i]) <= std::numeric_limits<R>::max() : forwards | backwards;
             }
             return all;
@@ -292,11 +322,14 @@ void check_sample_times(const ensemble_data<R>& e, const options& o, std::int64_
             continue;
         }
         const auto from = static_cast<double>(times.front()), to = static_cast<double>(times.back());
-        const bool inside =
-            end >= begin ? begin <= from && from <= to && to <= end : begin >= from && from >= to && to >= end;
-        require(inside, named_option(own.empty() ? "samples.times" : "samples.times_of_instances"), " go from ", from,
-                " to ", to, ", but instance ", i, " is integrated from ", begin, " to ", end, cure,
-                "give times within the domain, in the order in which the integration reaches them");
+        const double at_begin = same_instant(static_cast<R>(begin)), at_end = same_instant(static_cast<R>(end));
+        const bool inside = end >= begin ? begin - at_begin <= from && from <= to && to <= end + at_end
+                                         : begin + at_begin >= from && from >= to && to >= end - at_end;
+        if (inside) continue;
+        const auto texts = told_apart({from, to, begin, end});
+        refuse({named_option(own.empty() ? "samples.times" : "samples.times_of_instances"), " go from ", texts[0],
+                " to ", texts[1], ", but instance ", i, " is integrated from ", texts[2], " to ", texts[3], cure,
+                "give times within the domain, in the order in which the integration reaches them"});
     }
 }
 

@@ -386,6 +386,9 @@ TEST_CASE("counts that are not positive, or that no kernel can count to, are ref
         o.accumulation_limit = bad;
         options_refused(o, {"accumulation_limit is ", "must be from 1 to"});
     }
+    options more;
+    more.accumulation_limit = 65536;  // than are counted from one phase to the next
+    options_refused(more, {"accumulation_limit is 65536", "must be from 1 to 65535"});
     for (const std::int64_t bad : {std::int64_t{-1}, huge}) {
         options o;
         o.max_steps = bad;
@@ -624,6 +627,8 @@ TEST_CASE("sample times outside the domain, unordered or not finite are refused"
     options_refused<dense<cash_karp>>(o, {"samples.times go from -0.25 to 0.5", "instance 0", "within the domain"});
     o.samples.times = {0.5, 1.25};
     options_refused<dense<cash_karp>>(o, {"samples.times go from 0.5 to 1.25", "within the domain"});
+    o.samples.times = {0.5, 1 + 1e-14};  // more than sixteen roundings: told with the digits that differ
+    options_refused<dense<cash_karp>>(o, {"samples.times go from 0.5 to 1.00000000000001,", "from 0 to 1:"});
 
     auto e = good_decays();
     e.t_end()[3] = 0.375;

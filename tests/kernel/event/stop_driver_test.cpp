@@ -292,23 +292,26 @@ TEST_CASE("the right-hand side is as the action leaves it") {
         CHECK(e.parameter(infused::rate)[0] == 0.0);
     });
 }
-TEST_CASE("a sample at a stop time shows the state before the action") {
+TEST_CASE("a sample at a stop time, up to sixteen roundings, shows the state before the action") {
     each_method([]<class Method> {
         auto e = treated(0, 0.5, 4, 2);
         options o = with_tolerance(1e-9);
         o.samples.states = {dosed::gut};
-        o.samples.times = {0, 0.25, 0.5, std::nextafter(0.5, 1), 1, 2};
-        o.samples.capacity = 6;
+        constexpr double rounding = std::numeric_limits<double>::epsilon();
+        o.samples.times = {0, 0.25, 0.5, 0.5 + 8 * rounding, 0.5 + 9 * rounding, 1, 2, 2 + 32 * rounding};
+        o.samples.capacity = 8;
         solve<myriad::dense<Method>>(tests::test_device(), e, o);
         const auto gut = e.samples().state(dosed::gut);
-        REQUIRE(e.samples().stored()(0) == 6);
+        REQUIRE(e.samples().stored()(0) == 8);
         const double left = std::exp(-0.75);  // of a dose after half a unit of time
         CHECK(gut(0, 0) == 0.0);
         CHECK(std::abs(gut(0, 1) - std::exp(-0.375)) < 1e-5);
         CHECK(std::abs(gut(0, 2) - left) < 1e-7);
-        CHECK(std::abs(gut(0, 3) - (1 + left)) < 1e-7);
-        CHECK(std::abs(gut(0, 4) - (1 + left) * left) < 1e-7);
-        CHECK(std::abs(gut(0, 5) - (1 + left + left * left + left * left * left) * left) < 1e-7);
+        CHECK(gut(0, 3) == gut(0, 2));
+        CHECK(std::abs(gut(0, 4) - (1 + left)) < 1e-7);
+        CHECK(std::abs(gut(0, 5) - (1 + left) * left) < 1e-7);
+        CHECK(std::abs(gut(0, 6) - (1 + left + left * left + left * left * left) * left) < 1e-7);
+        CHECK(gut(0, 7) == gut(0, 6));  // at the end as at a stop
     });
 }
 TEST_CASE("an event sets a stop time, and the action follows it by the delay") {
@@ -327,6 +330,32 @@ TEST_CASE("an event sets a stop time, and the action follows it by the delay") {
             CHECK(e.integer_accessory(delayed::actions)[0] == 1);
             CHECK(e.accessory(delayed::t_action)[0] == e.accessory(delayed::t_event)[0] + delay);
             CHECK(std::abs(e.state(0)[0] - (5 - 10)) < 1e-8);
+        }
+    };
+    each_method([&]<class Method> {
+        check.template operator()<delayed, Method>();
+        check.template operator()<alone<delayed>, Method>();
+    });
+}
+TEST_CASE("a stop whose time every event sets anew acts every time") {
+    const auto check = []<class Model, class Method>() {
+        // from 0 to 1, down by 1 half a unit later: events at 1, 2, ... 20, the last action beyond the end
+        for (const int phases : {1, 7}) {
+            CAPTURE(phases);
+            ensemble<Model> e(1);
+            e.state(0) = 0.0;
+            e.parameter(delayed::level) = 1.0;
+            e.parameter(delayed::delay) = 0.5;
+            e.parameter(delayed::fall) = 1.0;
+            e.time_domain(0, 20.25);
+            options o = with_tolerance(1e-9, 0.3);
+            o.phases = phases;
+            if (phases > 1) o.phase_length = 20.25 / phases;
+            solve<Method>(tests::test_device(), e, o);
+            CHECK(e.status(0) == status::success);
+            CHECK(e.integer_accessory(delayed::events_seen)[0] == 20);
+            CHECK(e.integer_accessory(delayed::actions)[0] == 19);
+            CHECK(std::abs(e.state(0)[0] - 1.25) < 1e-8);
         }
     };
     each_method([&]<class Method> {

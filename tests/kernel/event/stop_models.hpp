@@ -83,7 +83,7 @@ struct infused {
 };
 
 /// x' = 1 with an event at x = level, after which an action follows `delay` later: it takes x down by `fall`. The time
-/// of the action is a component of its own, infinite if none is due.
+/// of the action is a component of its own, infinite at first, which the event sets and the action leaves as it is.
 struct delayed {
     enum state { x, n_state };
     enum parameter { level, delay, fall, n_parameter };
@@ -101,8 +101,8 @@ struct delayed {
         return myriad::vec<R, n_event>{y[x] - p[level]};
     }
     template <class R>
-    MYRIAD_FUNCTION static R stop_time(int, int, const auto& p) {
-        return p.accessory[due];
+    MYRIAD_FUNCTION static R stop_time(int, int number, const auto& p) {
+        return number == 0 ? p.accessory[due] : myriad::infinity_of<R>;
     }
     MYRIAD_FUNCTION static void initialise(auto& lane) {
         if (lane.phase == 0) lane.accessory[due] = myriad::infinity_of<std::remove_cvref_t<decltype(lane.t)>>;
@@ -116,7 +116,6 @@ struct delayed {
         lane.integer_accessory[actions] += 1;
         lane.accessory[t_action] = lane.t;
         lane.y[x] -= lane.parameter[fall];
-        lane.accessory[due] = myriad::infinity_of<std::remove_cvref_t<decltype(lane.t)>>;
     }
 };
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "myriad/kernel/model/null_spaces.hpp"
 #include "myriad/myriad.hpp"
 #include "tests/catch.hpp"
 #include "tests/host/ensemble/refusal.hpp"
@@ -138,6 +139,84 @@ TEST_CASE("a projection changes no charge: M y stays as it was") {
     CHECK(std::abs(e.state(4)[0] - e.state(3)[0] - charge_3) <= 1e-14);
     CHECK(e.state(2)[0] == 3);
     CHECK(myriad::solve<rodas_5p>(tests::test_device(1), e, {.relative_tolerance = 1e-5}).failed() == 0);
+}
+
+TEST_CASE("algebraic states jump at stops and events, and those of differential equations stay as they are") {
+    struct jump {
+        double cubic, linear, from_1_on, from_event_on;
+        double at_end;  // of x, which is 0 until t = 1 and then rises at the speed y to 1/2, where y becomes another
+    };
+    const jump jumps[] = {{1, 1, 2, -10, 0.5 - 2 * 1.5},      // y^3 + y = 2 for y = 1, and -10 for y = -2
+                          {0, 1, 1, 3, 0.5 + 3 * 1.5},        // linear
+                          {1, 1, 1e9 + 1e3, 1e9 + 1e3, 2e3},  // far away, for y = 1000
+                          {1, 1e-6, 1, -8, 0.5 - 2 * 1.5}};   // from a derivative that is nearly zero
+    constexpr std::int64_t size = 4;
+    ensemble<dae::levelled> e(size);
+    e.state(0) = e.state(1) = 0.0;
+    e.accessory(0) = 0.0;
+    e.parameter(dae::levelled::quadratic) = 0.0;
+    for (std::int64_t i = 0; i < size; ++i) {
+        e.parameter(dae::levelled::cubic)[i] = jumps[i].cubic;
+        e.parameter(dae::levelled::linear)[i] = jumps[i].linear;
+        e.parameter(dae::levelled::from_1_on)[i] = jumps[i].from_1_on;
+        e.parameter(dae::levelled::from_event_on)[i] = jumps[i].from_event_on;
+    }
+    e.time_domain(0, 3);
+    myriad::options o{.relative_tolerance = 1e-9, .absolute_tolerance = 1e-9};
+    o.events = {{.direction = myriad::direction::rising}};
+    CHECK(myriad::solve<rodas_5p>(tests::test_device(1), e, o).failed() == 0);
+    for (std::int64_t i = 0; i < size; ++i) {
+        CAPTURE(i);
+        CHECK(std::abs(e.state(0)[i] / jumps[i].at_end - 1) <= 2e-6);  // y at -8 is -2 to 2e-7
+    }
+    CHECK(std::abs(e.state(1)[0] + 2) <= 1e-9);
+}
+
+TEST_CASE("an instance without algebraic states that satisfy their equations ends where it lost them") {
+    ensemble<dae::levelled> e(2);
+    for (int c = 0; c < 5; ++c) e.parameter(c) = 0.0;
+    e.parameter(dae::levelled::quadratic) = 1.0;  // y^2 = 1, and 4 or -1 from t = 1 on
+    e.parameter(dae::levelled::from_1_on)[0] = 4;
+    e.parameter(dae::levelled::from_1_on)[1] = -1;
+    e.state(0) = 1.0;
+    e.state(1) = 1.0;
+    e.accessory(0) = 1.0;
+    e.time_domain(0, 2);
+    myriad::solve<rodas_5p>(tests::test_device(1), e, {});
+    CHECK(e.status(0) == myriad::status::success);
+    CHECK(std::abs(e.state(0)[0] - 4) <= 1e-6);
+    CHECK(e.status(1) == myriad::status::singular_jacobian);
+    CHECK(e.t()[1] == 1.0);
+}
+
+TEST_CASE("a phase that starts at another time starts with algebraic states of that time") {
+    using model = dae::crossed<9>;
+    ensemble<model> e(2);
+    for (int c = 0; c < 9; ++c) e.state(c) = 0.0;
+    e.time_domain(0, 2);
+    myriad::options o{.phases = 3, .relative_tolerance = 1e-9, .absolute_tolerance = 1e-9};
+    CHECK(myriad::solve<rodas_5p>(tests::test_device(1), e, o).failed() == 0);
+    CHECK(std::abs(e.state(model::z)[1] - std::sin(2.0)) <= 1e-7);
+    CHECK(std::abs(e.state(model::w)[1] - std::sin(2.0) * std::sin(2.0)) <= 1e-7);
+}
+
+TEST_CASE("combinations of rows and directions of states without derivatives are found when a model is compiled") {
+    constexpr auto& found = myriad::detail::null_spaces_of<dae::transistor_amplifier>;
+    STATIC_REQUIRE(found.count == 3);
+    double mass[8][8]{};
+    for (const auto& entry : dae::transistor_amplifier::mass_matrix) mass[entry.row][entry.column] += entry.value;
+    for (int k = 0; k < 3; ++k)
+        for (int i = 0; i < 8; ++i) {
+            double from_left = 0, from_right = 0;
+            for (int j = 0; j < 8; ++j) {
+                from_left += found.left[k][j] * mass[j][i];
+                from_right += mass[i][j] * found.right[k][j];
+            }
+            CHECK(std::abs(from_left) <= 1e-12 * 5e-6);
+            CHECK(std::abs(from_right) <= 1e-12 * 5e-6);
+        }
+    STATIC_REQUIRE(myriad::detail::n_algebraic<dae::crossed<9>> == 2);
+    STATIC_REQUIRE(myriad::detail::n_algebraic<dae::pendulum> == 1);
 }
 
 TEST_CASE("equations of a higher index are refused") {

@@ -159,6 +159,24 @@ TEMPLATE_TEST_CASE("normal_quantile is infinite at 0 and at 1, finite next to th
         CHECK(std::isnan(myriad::normal_quantile(beyond)));
 }
 
+TEMPLATE_TEST_CASE("instances from number 2^31 on draw numbers of their own", "", double, float) {
+    using R = TestType;
+    constexpr std::int32_t seed = 7;
+    for (const std::int64_t first :
+         {(std::int64_t{1} << 31) - 50, (std::int64_t{1} << 32) - 50, std::int64_t{1} << 52}) {
+        myriad::ensemble<draws, R> all(100);
+        myriad::host::ensemble_access::data(all).first_index = first;  // as in a chunk of a study
+        all.state(draws::unused) = R(0);
+        all.shared_integer(draws::seed) = seed;
+        all.time_domain(0, R(0.01));
+        myriad::solve<myriad::runge_kutta_4>(tests::test_device(), all, {.step = 0.01});
+        std::int64_t different = 0;
+        for (std::int64_t i = 0; i < all.size(); ++i)
+            different += all.accessory(draws::uniform)[i] != random_numbers<R>(seed, first + i, 0).uniform();
+        CHECK(different == 0);
+    }
+}
+
 TEMPLATE_TEST_CASE("hooks draw the same bits as the host, in every phase and by every schedule", "", double, float) {
     using R = TestType;
     constexpr std::int32_t seed = 20'111'118, phases = 3;

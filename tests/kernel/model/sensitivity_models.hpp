@@ -53,22 +53,23 @@ struct ball {
 };
 using ball_by_all = myriad::with_sensitivities<ball, ball::r, ball::floor, ball::g, ball::x, ball::v>;
 
-/// x' = a t, whose phase ends when x reaches `top`; without an action.
+/// x' = a t, whose phase ends when x reaches `top`; without an action. Beside it two events at a time.
 struct ramp {
     enum state { x, n_state };
-    enum parameter { a, top, n_parameter };
-    enum event { there, n_event };
+    enum parameter { a, top, before, after, n_parameter };
+    enum event { early, there, late, n_event };
 
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto t, const myriad::vec<R, n_state>&, const auto& p) {
         return myriad::vec<R, n_state>{R(p[a] * t)};
     }
     template <class R>
-    MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto, const myriad::vec<R, n_state>& y, const auto& p) {
-        return myriad::vec<R, n_event>{y[x] - p[top]};
+    MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto t, const myriad::vec<R, n_state>& y, const auto& p) {
+        return {R(t - p[before]), R(y[x] - p[top]), R(t - p[after])};
     }
 };
 using ramp_by_all = myriad::with_sensitivities<ramp, ramp::a, ramp::top, ramp::x>;
+using ramp_by_times = myriad::with_sensitivities<ramp, ramp::top, ramp::before, ramp::after>;
 
 /// A dose x -> x + amount at a time that is a parameter, and decay; the rate is an accessory that the start of the
 /// phase computes from the state, and each phase ends with x -> x k.

@@ -250,11 +250,12 @@ TEST_CASE("an event without an action that ends a phase has the sensitivities of
     myriad::ensemble<W> e(3);
     e.parameter(ramp::a) = 0.5;
     e.parameter(ramp::top) = 2;
+    e.parameter(ramp::before) = e.parameter(ramp::after) = 1000;  // never
     e.state(ramp::x) = 0.3;
     myriad::initial_sensitivities(e);
     e.time_domain(0, 100);
     myriad::options o = with_tolerance(1e-10);
-    o.events = {{.stop_after = 1}};
+    o.events = {{}, {.stop_after = 1}, {}};
     myriad::solve<myriad::tsitouras_5>(tests::test_device(), e, o);
     REQUIRE(e.status(0) == myriad::status::stopped_by_event);
     const auto time = [](const numbers& p) { return std::sqrt(2 * (p[1] - p[2]) / p[0]); };
@@ -262,6 +263,32 @@ TEST_CASE("an event without an action that ends a phase has the sensitivities of
     for (int d = 0; d < 3; ++d) {
         CHECK_THAT(e.accessory(W::time_sensitivity(d))[0], near(derivative(time, at, static_cast<std::size_t>(d))));
         CHECK_THAT(e.state(W::sensitivity(ramp::x, d))[0], near(d == 1 ? 1 : 0));  // it ends at `top`
+    }
+}
+
+TEST_CASE(
+    "the time at which a phase ended has the derivatives of the event that ended it, not of others at that instant") {
+    using W = ramp_by_times;  // by the level, the time of the event before it, and that of the event behind it
+    for (int ending = 0; ending < 3; ++ending) {
+        CAPTURE(ending);
+        myriad::ensemble<W> e(3);
+        e.parameter(ramp::a) = 0.5;
+        e.parameter(ramp::top) = 1;
+        e.parameter(ramp::before) = e.parameter(ramp::after) = 2;  // where x = t^2 / 4 = 1
+        e.state(ramp::x) = 0;
+        myriad::initial_sensitivities(e);
+        e.time_domain(0, 100);
+        myriad::options o = with_tolerance(1e-10);
+        o.events = {{}, {}, {}};
+        o.events[static_cast<std::size_t>(ending)].stop_after = 1;
+        myriad::solve<myriad::tsitouras_5>(tests::test_device(), e, o);
+        REQUIRE(e.status(0) == myriad::status::stopped_by_event);
+        for (int d = 0; d < 3; ++d) {
+            const bool own = d == (ending == 1 ? 0 : ending == 0 ? 1 : 2);
+            // dt/d top is 1 / slope, and the slope is 1 there
+            CHECK_THAT(e.accessory(W::time_sensitivity(d))[0], near(own ? 1 : 0));
+            CHECK_THAT(e.state(W::sensitivity(ramp::x, d))[0], near(own ? 1 : 0));
+        }
     }
 }
 

@@ -301,3 +301,82 @@ TEST_CASE("dual numbers of dual numbers have second derivatives") {
     const double by_both = difference_of([&](double h) { return f(dual<double>(x, 1), t + h).derivative; });
     CHECK(std::abs(mixed.derivative.derivative - by_both) <= 1e-9 * std::abs(by_both));
 }
+
+TEST_CASE("a derivative that is zero stays zero where the slope of a function is infinite") {
+    const auto check = []<class S, class Derivative>(const char* name, auto f, S at, Derivative none) {
+        const auto got = f(dual<S, Derivative>(at, none));
+        CAPTURE(name);
+        if constexpr (requires { got.derivative.in; }) {
+            CHECK(get_lane(got.derivative.in[0].value, 0) == 0);
+            CHECK(get_lane(got.derivative.in[1].value, 0) == 0);
+        } else if constexpr (requires { got.derivative.derivative; }) {
+            CHECK(got.derivative.value == 0);
+            CHECK(got.derivative.derivative == 0);
+        } else {
+            CHECK(get_lane(static_cast<const S&>(got.derivative), 0) == 0);
+        }
+    };
+    const auto of_all_kinds = [&](const char* name, double x, auto f) {
+        check(name, f, x, 0.0);
+        check(name, f, static_cast<float>(x), 0.0f);
+        check(name, f, x, partial<double>(0.0));
+        check(name, f, x, partials<double, 2>{{partial<double>(0.0), partial<double>(-0.0)}});
+        check(name, f, pack<double, 2>(x), pack<double, 2>(0.0));
+        check(name, f, pack<float, 2>(static_cast<float>(x)), pack<float, 2>(0.0f));
+        check(name, f, dual<double>(x, 0.0), dual<double>(0.0, 0.0));
+    };
+#define CHECK_STAYS_ZERO(expression, ...)             \
+    for (const double point : {__VA_ARGS__}) {        \
+        of_all_kinds(#expression, point, [](auto x) { \
+            using namespace myriad;                   \
+            return expression;                        \
+        });                                           \
+    }
+    CHECK_STAYS_ZERO(sqrt(x), 0.0)
+    CHECK_STAYS_ZERO(sqrt(max(x, 0.0)), 0.0, -1.0)
+    CHECK_STAYS_ZERO(cbrt(x), 0.0)
+    CHECK_STAYS_ZERO(asin(x), 1.0, -1.0)
+    CHECK_STAYS_ZERO(acos(x), 1.0, -1.0)
+    CHECK_STAYS_ZERO(log(x), 0.0)
+    CHECK_STAYS_ZERO(log2(x), 0.0)
+    CHECK_STAYS_ZERO(log10(x), 0.0)
+    CHECK_STAYS_ZERO(log1p(x), -1.0)
+    CHECK_STAYS_ZERO(pow(x, 0.3), 0.0)
+    CHECK_STAYS_ZERO(powr(x, 0.3), 0.0)
+    CHECK_STAYS_ZERO(pow(x, x), 0.0)
+    CHECK_STAYS_ZERO(hypot(x, x), 0.0)
+    CHECK_STAYS_ZERO(atan2(x, x), 0.0)
+    CHECK_STAYS_ZERO(exp(1.5 * log(x)), 0.0)
+}
+
+TEST_CASE("a weight that is zero makes a derivative zero, as that of a power of zero by its exponent") {
+    const auto of_exponent = [](auto x) {
+        return [x](auto n) {
+            using namespace myriad;
+            return pow(decltype(n)(x), n);
+        };
+    };
+    for (const double n : {0.5, 1.0, 2.5}) {
+        CHECK(of_exponent(0.0)(dual<double>(n, 1)).derivative == 0);
+        CHECK(pow(0.0, dual<double>(n, 1)).derivative == 0);
+        CHECK(pow(0.0f, dual<float>(static_cast<float>(n), 1)).derivative == 0);
+        CHECK(get_lane(pow(dual<pack<double, 2>>(pack<double, 2>(0.0)), dual<pack<double, 2>>(n, 1)).derivative, 1) ==
+              0);
+        const auto twice = of_exponent(0.0)(dual<dual<double>>(dual<double>(n, 1), dual<double>(1, 0)));
+        CHECK(twice.derivative.value == 0);
+        CHECK(twice.derivative.derivative == 0);
+        CHECK(exp(dual<double>(n, 1) * log(dual<double>(0.0))).derivative == 0);  // the same, as it is often written
+    }
+    CHECK(hypot(dual<double>(0, 3), dual<double>(0, 4)).derivative == 0);  // as of abs, one of those between -5 and 5
+    CHECK(pow(dual<double>(0, 3), 1.0).derivative == 3);
+    CHECK(pow(dual<double>(0, 3), dual<double>(1, 2)).derivative == 3);
+}
+
+TEST_CASE("a zero derivative of the first order has those of the second that it has by itself") {
+    // sqrt(x^2) along x at a point where x' = 0 and x'' is not: the derivative of sqrt(u) u'
+    using twice = dual<dual<double>>;
+    const twice u(dual<double>(4, 0), dual<double>(0, 5));  // u' = 0, whose own derivative is 5
+    CHECK(sqrt(u).derivative.derivative == 0.5 / 2 * 5);
+    CHECK(log(u).derivative.derivative == 5.0 / 4);
+    CHECK(pow(u, 0.5).derivative.derivative == Catch::Detail::Approx(0.5 / 2 * 5));
+}

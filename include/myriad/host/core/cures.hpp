@@ -20,6 +20,7 @@
     of(fewer_instances, "integrate fewer instances at a time: a smaller options::chunk_size or solver capacity") \
     of(smaller_chunk, "make chunk smaller") \
     of(new_folder, "start the study in a new folder with a smaller chunk") \
+    of(allow_arithmetic, "allow this by store_options::others = other_arithmetic::warn") \
     of(make_consistent, "call myriad::make_consistent(ensemble)")
 // clang-format on
 

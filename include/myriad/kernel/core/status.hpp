@@ -21,9 +21,9 @@ enum class status : std::uint8_t {
     event_accumulation,  ///< actions of one event accumulated on its surface (Zeno), or stops at one time; t is when
                          ///< the last one was counted: a bouncing ball comes to rest 2 v / (g (1 - e)) later
                          ///< (docs/numerics.md)
-    singular_jacobian,   ///< a linear solve of an implicit method failed
-    invalid_input,       ///< a state, parameter or time was not finite at the start
-    queue_overflow,      ///< a hook returned `action::overflow`: no room for an action that is to run later
+    singular_jacobian,  ///< a linear solve of an implicit method failed, or no algebraic states satisfy their equations
+    invalid_input,      ///< a state, parameter or time was not finite at the start
+    queue_overflow,     ///< a hook returned `action::overflow`: no room for an action that is to run later
     interrupted,  ///< the call ended before: by its time limit, or half a second after the progress function asked
 };
 /// The number of statuses.

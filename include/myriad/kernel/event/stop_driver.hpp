@@ -25,18 +25,19 @@ struct stop_driver {
     /// `continues` the last one, which has called the actions at its end.
     MYRIAD_FUNCTION void begin(int i, bool continues) const {
         const R t = get_lane(s.data.t, i);
-        const bool backwards = get_lane(s.data.t_end, i) < t;
-        const auto passed = [&](R time)
-                                MYRIAD_LAMBDA { return (backwards ? time > t : time < t) || (continues && time == t); };
+        s.stops.backwards[i] = get_lane(s.data.t_end, i) < t;
         MYRIAD_UNROLL
-        for (int j = 0; j < kinds; ++j) s.stops.number[i][j] = 0;
-        find_next(i, passed);
+        for (int j = 0; j < kinds; ++j) {
+            s.stops.number[i][j] = 0;
+            s.stops.acted[i][j] = continues ? t : never;
+        }
+        find_next(i);
     }
     /// Finds the next stops of lane i again, after a hook. Returns whether steps now have to end elsewhere.
     MYRIAD_FUNCTION bool update(int i) const {
         const R t = get_lane(s.data.t, i), t_end = get_lane(s.data.t_end, i), before = get_lane(s.stops.next, i);
-        const auto passed = [&](R time) MYRIAD_LAMBDA { return t < t_end ? time < t : t > t_end && time > t; };
-        find_next(i, passed);
+        if (t != t_end) s.stops.backwards[i] = t_end < t;
+        find_next(i);
         return get_lane(s.stops.next, i) != before;
     }
 
@@ -56,6 +57,7 @@ struct stop_driver {
                 if (time_of(detail::inputs_of_lane(s.data, i), j, number) != t) return;
                 if (rounds >= args.accumulation_limit) return s.end_lane(i, status::event_accumulation);
                 next = number < most ? number + 1 : most;
+                s.stops.acted[i][j] = t;
                 action(j, number);
                 acted = true;
             });
@@ -66,36 +68,57 @@ struct stop_driver {
 
 private:
     static constexpr std::int32_t most = std::numeric_limits<std::int32_t>::max();
+    static constexpr R never = infinity_of<R>;  // at which no stop acts
 
     static MYRIAD_FUNCTION R time_of(const inputs<Model, R>& p, int j, std::int32_t number) {
         return Model::template stop_time<R>(j, number, p);
     }
 
-    /// Passes over stops that have `passed`, and sets the nearest of the others, up to t_end. A time that is not finite
-    /// is the end of a kind's stops.
-    template <class Passed>
-    MYRIAD_FUNCTION void find_next(int i, const Passed& passed) const {
+    /// Passes over stops that are over, and sets the nearest of the others, up to t_end. A time that is not finite is
+    /// the end of a kind's stops.
+    MYRIAD_FUNCTION void find_next(int i) const {
         const R t = get_lane(s.data.t, i), t_end = get_lane(s.data.t_end, i);
         const auto& p = detail::inputs_of_lane(s.data, i);
         R nearest = t_end;
         MYRIAD_UNROLL
         for (int j = 0; j < kinds; ++j) {
-            std::int32_t& number = s.stops.number[i][j];
-            number = first_not_passed(p, j, number, passed);
-            const R time = time_of(p, j, number);
+            pass_over(p, i, j, t);
+            const R time = time_of(p, j, s.stops.number[i][j]);
             const bool nearer = t <= t_end ? time >= t && time < nearest : time <= t && time > nearest;
-            if (is_finite(time) && !passed(time) && nearer) nearest = time;
+            if (is_finite(time) && nearer) nearest = time;
         }
         set_lane(s.stops.next, i, nearest);
     }
-    /// The number of the first stop of kind j, from `number` on, that has not passed. Times do not decrease in the
+    /// Sets the number of the next stop of kind j in lane i: the first, from that before it on, whose time is still to
+    /// come. Where a hook has set the last one's time anew, the first of all is sought; of its times that are now,
+    /// those at which the kind has acted are over.
+    MYRIAD_FUNCTION void pass_over(const inputs<Model, R>& p, int i, int j, R t) const {
+        std::int32_t& number = s.stops.number[i][j];
+        R& acted = s.stops.acted[i][j];
+        const bool backwards = s.stops.backwards[i], acted_now = acted == t;
+        const auto has_passed = [&](R time) MYRIAD_LAMBDA { return backwards ? time > t : time < t; };
+        const auto is_done = [&](R time) MYRIAD_LAMBDA { return has_passed(time) || (acted_now && time == t); };
+        bool from_first = number == 0;
+        if (number > 0) {
+            const R last = time_of(p, j, number - 1);
+            from_first = is_finite(last) && !is_done(last);
+            if (last != t) acted = never;
+        }
+        if (from_first) {
+            number = first_to_come(p, j, 0, is_done);
+            acted = acted_now && number > 0 && time_of(p, j, number - 1) == t ? t : never;
+        } else {
+            number = first_to_come(p, j, number, has_passed);
+        }
+    }
+    /// The number of the first stop of kind j, from `number` on, that is not over. Times do not decrease in the
     /// direction of the integration: strides that double, then bisection.
-    template <class Passed>
-    static MYRIAD_FUNCTION std::int32_t first_not_passed(const inputs<Model, R>& p, int j, std::int32_t number,
-                                                         const Passed& passed) {
+    template <class Over>
+    static MYRIAD_FUNCTION std::int32_t first_to_come(const inputs<Model, R>& p, int j, std::int32_t number,
+                                                      const Over& over) {
         const auto is_over = [&](std::int32_t k) MYRIAD_LAMBDA {
             const R time = time_of(p, j, k);
-            return is_finite(time) && passed(time);
+            return is_finite(time) && over(time);
         };
         if (!MYRIAD_UNLIKELY(is_over(number))) return number;
         std::int32_t low = number, high = most;

@@ -7,6 +7,7 @@
 #include "myriad/kernel/controller/stepping.hpp"
 #include "myriad/kernel/event/event_driver.hpp"
 #include "myriad/kernel/event/stop_driver.hpp"
+#include "myriad/kernel/integrator/consistent_state.hpp"
 #include "myriad/kernel/state/integration_state.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
@@ -53,10 +54,12 @@ struct hook_driver {
         if constexpr (Method::first_same_as_last || has_events<Model> || samples_trajectory<Method>) {
             if (any(changed)) {
                 check_finite(changed, before.y);
+                make_consistent(changed);
                 follow_up(changed, before);
             }
         } else {
             check_finite(accepted, before.y);
+            if constexpr (n_algebraic < Model >> 0) make_consistent(changed);
         }
     }
 
@@ -76,6 +79,7 @@ struct hook_driver {
             if (any(changed)) {
                 s.slopes.invalidate(changed);
                 check_finite(changed, before.y);
+                make_consistent(changed);
                 events.update_after_hook(changed);
             }
             for_each_lane(acting, [&](int i) MYRIAD_LAMBDA { events.update_after_events(i, before); });
@@ -205,6 +209,7 @@ private:
     MYRIAD_FUNCTION void follow_action(const mask& changed, const lane_data<Model, S>& before) {
         if (!any(changed)) return;
         check_finite(changed, before.y);
+        make_consistent(changed);
         if constexpr (has_events<Model>) events.forget_fired();  // their actions are done
         follow_up(changed, before);
     }
@@ -232,7 +237,13 @@ private:
     template <class Hook>
     MYRIAD_FUNCTION void run_hook(int i, Hook&& hook) {
         const R t_end = get_lane(s.data.t_end, i), h_next = get_lane(s.data.h_next, i);
-        const action wanted = detail::run_on_lane(s.data, i, hook);
+        const action wanted = detail::run_on_lane(s.data, i, [&](auto& lane) MYRIAD_LAMBDA {
+            if constexpr (keeps_end_of_phase<Model>) {
+                const bool is_over = get_lane(s.ended, i) && s.ending[i] != status::success;
+                if (is_over) return Model::after_end(lane, hook);
+            }
+            return detail::action_of([&]() MYRIAD_LAMBDA { return hook(lane); });
+        });
         if (get_lane(s.data.h_next, i) != h_next) s.take_step_size(args, i, h_next);
         if constexpr (writes_time_domain<Model>) {
             if (get_lane(s.data.t_end, i) != t_end) retarget(i);
@@ -298,6 +309,13 @@ private:
         if constexpr (has_events<Model>) {
             const inputs<Model, S>& p = before;
             events.update_after_hook(changed, detail::evaluate_events<Model>(s.now(), before.y, p));
+        }
+    }
+
+    /// Algebraic states follow what a hook has changed in these lanes.
+    MYRIAD_FUNCTION void make_consistent([[maybe_unused]] const mask& changed) {
+        if constexpr (n_algebraic < Model >> 0) {
+            for_each_lane(changed & !s.ended, [&](int i) MYRIAD_LAMBDA { detail::make_state_consistent(args, s, i); });
         }
     }
 

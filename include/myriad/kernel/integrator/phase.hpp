@@ -7,6 +7,7 @@
 #include "myriad/kernel/controller/stepping.hpp"
 #include "myriad/kernel/event/event_driver.hpp"
 #include "myriad/kernel/event/stop_driver.hpp"
+#include "myriad/kernel/integrator/consistent_state.hpp"
 #include "myriad/kernel/output/sampler.hpp"
 #include "myriad/kernel/output/summariser.hpp"
 #include "myriad/kernel/state/integration_state.hpp"
@@ -121,7 +122,7 @@ private:
         if constexpr (writes_time_domain<Model>) load_time_domain(i);
         stepping_type{args, s}.load(i);
         if constexpr (m > 0) events.load(i);
-        set_lane(s.data.index, i, static_cast<lane_integer<index_of<S>>>(args.first_index + index));
+        set_lane(s.data.index, i, args.first_index + index);
         s.phases_left[i] = args.ended[index] != 0 ? 0 : args.phases - args.first_phase;
     }
 
@@ -196,15 +197,29 @@ private:
         stepping_type steps{args, s};
         steps.choose_step(i, phase);
         if constexpr (has_initialise<Model>) {
+            // What has acted at this time is told by the times of stops that were its own then.
+            if constexpr (has_stops<Model>) {
+                if (carry_on) stop_driver<Model, Method, S>{args, s}.begin(i, true);
+            }
             place(i, [](auto& lane) MYRIAD_LAMBDA { Model::initialise(lane); });
             if constexpr (writes_time_domain<Model>) {
                 if (!carry_on) set_lane(s.data.t, i, get_lane(s.data.t_begin, i));
             }
         }
+        if constexpr (n_algebraic < Model >> 0) {
+            if (has_initialise<Model> || phase > 0) make_consistent(i);  // other initial values the host has checked
+        }
         const R t = get_lane(s.data.t, i);
         args.t[index] = t;
         if constexpr (has_summaries<Model>) summariser<Model, Method, S>{s}.begin(i);
-        if constexpr (has_stops<Model>) stop_driver<Model, Method, S>{args, s}.begin(i, carry_on);
+        if constexpr (has_stops<Model>) {
+            const stop_driver<Model, Method, S> stops{args, s};
+            if (has_initialise<Model> && carry_on) {
+                stops.update(i);
+            } else {
+                stops.begin(i, carry_on);
+            }
+        }
         steps.begin(i, t);
         if constexpr (m > 0) {
             if (phase == 0) events.reset(i);
@@ -240,7 +255,18 @@ private:
                 stops.update(i);
             }
         });
-        if (acted) stepping_type{args, s}.begin(i, t);
+        if (!acted) return;
+        if constexpr (n_algebraic < Model >> 0) make_consistent(i);
+        stepping_type{args, s}.begin(i, t);
+    }
+    /// Algebraic states follow what the hooks before the first step have set. Functions of events have no side then, as
+    /// after these hooks.
+    MYRIAD_FUNCTION void make_consistent(int i) {
+        if (s.ending[i] != status::success) return;
+        [[maybe_unused]] const bool changed = detail::make_state_consistent(args, s, i);
+        if constexpr (m > 0) {
+            if (changed) events.reset(i);
+        }
     }
 
     /// Runs `initialise`, `finalise` or an action before the first step, and returns what it requests. A state or step

@@ -39,15 +39,15 @@ struct basic_action_queue {
                 next = p.accessory[at.first + i];
         return next;
     }
-    /// Puts an action, which runs at `time`, or now if that has passed. Times that differ by less than 1e-10 of
-    /// themselves are one, as rounding is not to decide which action comes first. Returns whether there was room.
+    /// Puts an action, which runs at `time`, or now if that has passed. Times that differ by sixteen roundings or less
+    /// are one, as rounding is not to decide which action comes first. Returns whether there was room.
     template <class Lane, class R>
     static MYRIAD_FUNCTION bool put(Lane& lane, int action, const R& time, const vec<R, most_values>& value = {}) {
         using Real = std::remove_cvref_t<decltype(lane.t)>;
         const Layout at{};
         bool has_room = false;
         Real when = time > lane.t ? time : lane.t;
-        const Real same = max(Real(1e-10), Real(8) * epsilon_of<Real>) * abs(when);
+        const Real same = Real(16) * epsilon_of<Real> * max(abs(lane.t), abs(when));  // a sum, and what it was made of
         MYRIAD_UNROLL_ON_GPU
         for (int i = 0; i < at.capacity; ++i)
             if (lane.integer_accessory[at.first_integer + i] != 0 && abs(lane.accessory[at.first + i] - when) < same)

@@ -74,6 +74,9 @@ inline constexpr bool enumerates_any = false
 #undef MYRIAD_ENUMERATES
     ;
 
+template <class Model, class I>
+inline constexpr bool is_state_index = enumerates_state<Model, I>();
+
 // Refuses an index of type I into components of a kind: any index if the model has none of them, or an enumerator of
 // another kind.
 #define MYRIAD_INDEX_CHECK(kind, ...)                                                                                 \

@@ -23,33 +23,33 @@ enum class coupling_shape : std::uint8_t {
 /// `circulant_coupling` and `same_coupling`; its entries are set by `set_coupling`, on the host, and are the same for
 /// all instances.
 struct coupling {
-    int publication;               ///< number of the publication that is summed
-    coupling_shape shape;          ///< which entries there are
-    int bandwidth;                 ///< diagonals with entries on either side of the main one; -1: all
-    const char* publication_type;  ///< a mark of the type of the publication, for checks
-    int matrix_of = -1;            ///< number of the earlier coupling whose matrix it has; -1: it has its own
+    int publication;                 ///< number of the publication that is summed
+    coupling_shape shape;            ///< which entries there are
+    int bandwidth;                   ///< diagonals with entries on either side of the main one; -1: all
+    std::uint64_t publication_type;  ///< a mark of the type of the publication, for checks
+    int matrix_of = -1;              ///< number of the earlier coupling whose matrix it has; -1: it has its own
 };
 
 /// By a matrix of any entries.
 template <class Publication>
 constexpr coupling full_coupling(Publication publication) {
-    return {static_cast<int>(publication), coupling_shape::full, -1, &detail::type_mark<Publication>};
+    return {static_cast<int>(publication), coupling_shape::full, -1, detail::type_mark<Publication>};
 }
 /// By a matrix with entries on the diagonal, and on `bandwidth` diagonals on either side of it.
 template <class Publication>
 constexpr coupling banded_coupling(Publication publication, int bandwidth) {
-    return {static_cast<int>(publication), coupling_shape::banded, bandwidth, &detail::type_mark<Publication>};
+    return {static_cast<int>(publication), coupling_shape::banded, bandwidth, detail::type_mark<Publication>};
 }
 /// By a circulant matrix: a ring, in which all units are coupled alike. With `bandwidth`, a unit is coupled to that
 /// many neighbours on either side; without, to all units.
 template <class Publication>
 constexpr coupling circulant_coupling(Publication publication, int bandwidth = -1) {
-    return {static_cast<int>(publication), coupling_shape::circulant, bandwidth, &detail::type_mark<Publication>};
+    return {static_cast<int>(publication), coupling_shape::circulant, bandwidth, detail::type_mark<Publication>};
 }
 /// By the matrix of an earlier coupling, which is given by its place among `couplings`.
 template <class Publication, class K>
 constexpr coupling same_coupling(Publication publication, K earlier) {
-    return {static_cast<int>(publication), coupling_shape::full, -1, &detail::type_mark<Publication>,
+    return {static_cast<int>(publication), coupling_shape::full, -1, detail::type_mark<Publication>,
             static_cast<int>(earlier)};
 }
 
@@ -94,7 +94,7 @@ struct coupling_layout {
 /// The number of the coupling whose matrix coupling k has: k itself, or an earlier one.
 template <class Unit, int k>
 inline constexpr int coupling_with_matrix = Unit::couplings[k].matrix_of < 0 ? k : Unit::couplings[k].matrix_of;
-/// Without the mark of a type, which device code cannot use.
+/// Without the mark of a type.
 template <class Unit, int units, int k>
 inline constexpr coupling_layout coupling_layout_of{Unit::couplings[k].publication,
                                                     Unit::couplings[coupling_with_matrix<Unit, k>].shape,
@@ -117,9 +117,9 @@ inline constexpr int first_coupling_entry = coupling_entries_before<Unit, units,
 
 /// Whether a mark of a type stands for a number, or for the units' enumeration of publications.
 template <class Unit>
-constexpr bool marks_publication(const char* mark) {
-    bool own = mark == &type_mark<int> || mark == &type_mark<std::remove_cv_t<decltype(Unit::n_publication)>>;
-    if constexpr (requires { typename Unit::publication; }) own = own || mark == &type_mark<typename Unit::publication>;
+constexpr bool marks_publication(std::uint64_t mark) {
+    bool own = mark == type_mark<int> || mark == type_mark<std::remove_cv_t<decltype(Unit::n_publication)>>;
+    if constexpr (requires { typename Unit::publication; }) own = own || mark == type_mark<typename Unit::publication>;
     return own;
 }
 

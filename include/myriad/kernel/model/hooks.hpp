@@ -40,6 +40,21 @@ concept hook_result = std::is_void_v<T> || std::same_as<T, action>;
         [[maybe_unused]] decltype(call)* what_the_compiler_says; \
     }
 
+// Refuses a function of time, states and inputs whose arguments are in another order. Only where the call fails: to try
+// another order compiles the body of a function whose type of return is deduced.
+#define MYRIAD_CHECK_ORDER(name)                                                                      \
+    if constexpr (!requires { Model::template name<R>(R{}, *y, *p); }) {                              \
+        constexpr bool takes_another_order = requires { Model::template name<R>(*y, R{}, *p); }       \
+        || requires { Model::template name<R>(R{}, *p, *y); }                                         \
+        || requires { Model::template name<R>(*y, *p, R{}); }                                         \
+        || requires { Model::template name<R>(*p, R{}, *y); }                                         \
+        || requires { Model::template name<R>(*p, *y, R{}); };                                        \
+        static_assert(!takes_another_order,                                                           \
+                      "the arguments of " #name                                                       \
+                      " are exchanged: they are the time, the states and the inputs, in this order, " \
+                      "`auto t, const myriad::vec<R, n_state>& y, const auto& p`");                   \
+    }
+
 /// Refuses hooks with a wrong signature, and shows the right one. The arguments' values are unused.
 template <class Model, class R>
 constexpr bool check_hooks(const vec<R, n_state<Model>>* y = nullptr, const inputs<Model, R>* p = nullptr,
@@ -52,10 +67,14 @@ constexpr bool check_hooks(const vec<R, n_state<Model>>* y = nullptr, const inpu
     using event_values = vec<R, n_event<Model>>;
     using observed_values = vec<R, n_observed<Model>>;
     if constexpr (has_rhs<Model> && n_state<Model> != 0) {
+        MYRIAD_CHECK_ORDER(rhs)
         MYRIAD_CHECK_CALL(
             (Model::template rhs<R>(R{}, *y, *p)), std::same_as<slopes>,
             "rhs has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static myriad::vec<R, n_state> "
             "rhs(auto t, const myriad::vec<R, n_state>& y, const auto& p)`, and public")
+    }
+    if constexpr (gives_jacobian<Model>) {
+        MYRIAD_CHECK_ORDER(jacobian)
     }
     if constexpr (gives_jacobian<Model> && has_jacobian_pattern<Model>) {
         using derivatives = vec<R, n_declared_entry<Model>>;
@@ -72,12 +91,14 @@ constexpr bool check_hooks(const vec<R, n_state<Model>>* y = nullptr, const inpu
             "j, and public")
     }
     if constexpr (has_events<Model> && n_event<Model> != 0) {
+        MYRIAD_CHECK_ORDER(events)
         MYRIAD_CHECK_CALL(
             (Model::template events<R>(R{}, *y, *p)), std::same_as<event_values>,
             "events has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static myriad::vec<R, "
             "n_event> events(auto t, const myriad::vec<R, n_state>& y, const auto& p)`, and public")
     }
     if constexpr (has_observe<Model> && n_observed<Model> != 0) {
+        MYRIAD_CHECK_ORDER(observe)
         MYRIAD_CHECK_CALL(
             (Model::template observe<R>(R{}, *y, *p)), std::same_as<observed_values>,
             "observe has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static myriad::vec<R, "
@@ -135,6 +156,7 @@ constexpr bool check_hooks(const vec<R, n_state<Model>>* y = nullptr, const inpu
     }
     return true;
 }
+#undef MYRIAD_CHECK_ORDER
 #undef MYRIAD_CHECK_CALL
 
 template <class Model, class R>
@@ -171,6 +193,12 @@ MYRIAD_FUNCTION action action_of(Call&& call) {
         return call();
     }
 }
+
+/// Whether a model keeps what ended its phase, and so has to be told of actions that come after it at the same instant.
+template <class Model>
+inline constexpr bool keeps_end_of_phase = requires {
+    requires std::is_same_v<decltype(Model::keeps_end_of_phase), const bool>;  // and no component of that name
+};
 
 /// Runs a scalar hook on lane i: on the data itself for one instance, on a copy of the lane for a pack.
 template <class Model, class S, class Hook>

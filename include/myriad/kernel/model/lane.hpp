@@ -9,24 +9,23 @@
 #include "myriad/kernel/core/vec.hpp"
 #include "myriad/kernel/model/concepts.hpp"
 #include "myriad/kernel/scalar/select.hpp"
+#include "myriad/kernel/scalar/wide_integer.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// 64-bit for one instance; integers of the lanes' width for a pack (32-bit in packs of float).
+/// The number of an instance, and of each of a pack: of 64 bits, also where integers of the lanes' width have 32.
 template <class S>
-using index_of = std::conditional_t<std::is_floating_point_v<S>, std::int64_t, integer_of<S>>;
-
-/// The integer type of one of its lanes.
-template <class I>
-struct lane_integer_type {
-    using type = I;
+struct index_type {
+    using type = std::int64_t;
 };
-template <class I>
-requires(!std::is_integral_v<I>) struct lane_integer_type<I> {
-    using type = typename I::value_type;
+template <class S>
+requires(lanes_of<S> > 1) struct index_type<S> {
+    using pack = integer_of<S>;
+    using type =
+        std::conditional_t<sizeof(typename pack::value_type) == sizeof(std::int64_t), pack, wide_integer<pack>>;
 };
-template <class I>
-using lane_integer = typename lane_integer_type<I>::type;
+template <class S>
+using index_of = typename index_type<S>::type;
 
 template <class Model, class S>
 struct lane_data;
@@ -95,6 +94,10 @@ struct inputs : accessories<Model, S, !detail::accessories_are_outputs<Model>>, 
     template <class I>
     MYRIAD_FUNCTION const S& operator[](I i) const
         MYRIAD_WARN_OF_INDEX(static_cast<int>(i), detail::n_parameter<Model>) {
+        static_assert(
+            !detail::is_state_index<Model, I>,
+            "a state is looked for among the inputs: the arguments of rhs, events and observe are the time, the states "
+            "and the inputs, in this order, `auto t, const myriad::vec<R, n_state>& y, const auto& p`");
         static_assert(detail::parameter_index_fits<Model, I>);
         return parameter[static_cast<int>(i)];
     }

@@ -207,6 +207,17 @@ struct with_sensitivities : detail::observing<Model, detail::component_direction
     static constexpr int undefined = places::undefined;    ///< number of events at which a derivative did not exist
     static constexpr int n_accessory = places::count + (directions::move_time_domain ? 2 : 0);  ///< how many in all
 
+    static constexpr bool keeps_end_of_phase =
+        true;  ///< the time at which it ended has the derivatives of what ended it
+    /// Calls an action at the instant at which another event, stop or action has ended the phase.
+    MYRIAD_FUNCTION static action after_end(auto& wrapped, auto&& hook) {
+        const bool known = wrapped.t == wrapped.accessory[event_time];  // else `after_step` has ended it
+        const auto of_end = detail::part<n_directions>(wrapped.accessory, places::time);
+        const action wanted = detail::action_of([&]() MYRIAD_LAMBDA { return hook(wrapped); });
+        if (known) detail::set_part(wrapped.accessory, places::time, of_end);
+        return wanted;
+    }
+
     /// The model's own hook, and what derivatives need of the phase's begin.
     MYRIAD_FUNCTION static void initialise(auto& wrapped) {
         using R = std::remove_cvref_t<decltype(wrapped.t)>;

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <iterator>
+#include <string_view>
 #include <type_traits>
 
 #include "myriad/kernel/model/concepts.hpp"
@@ -24,9 +25,33 @@ enum class over_phase : std::uint8_t {
 
 namespace myriad::detail {
 
-/// A variable whose address identifies a type in constant expressions.
+// Their names tell types apart in constant expressions, and not the addresses of variables: with sanitizers, and with
+// -fno-delete-null-pointer-checks, g++ does not take two of these for different before the program is linked.
 template <class E>
-inline constexpr char type_mark = 0;
+constexpr std::string_view name_of_type() {
+    return __PRETTY_FUNCTION__;
+}
+/// The name of an enumeration's first enumerator as well, as g++ gives all that have no name the same one.
+template <class E, E first>
+constexpr std::string_view name_of_type() {
+    return __PRETTY_FUNCTION__;
+}
+constexpr std::uint64_t hash_of(std::string_view text) {  // FNV-1a
+    std::uint64_t hash = 14695981039346656037u;
+    for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211u;
+    return hash;
+}
+template <class E>
+constexpr std::uint64_t type_mark_of() {
+    if constexpr (std::is_enum_v<E>) {
+        return hash_of(name_of_type<E, static_cast<E>(0)>());
+    } else {
+        return hash_of(name_of_type<E>());
+    }
+}
+/// A number that identifies a type.
+template <class E>
+inline constexpr std::uint64_t type_mark = type_mark_of<E>();
 
 }  // namespace myriad::detail
 
@@ -35,17 +60,17 @@ namespace myriad {
 /// An observed quantity, what to compute from it, and the accessory that receives it: `static constexpr
 /// myriad::summary summaries[] = {{height, myriad::over_phase::maximum, highest}};`
 struct summary {
-    int quantity;                ///< number of the observed quantity
-    over_phase kind;             ///< what is computed from it
-    int accessory;               ///< number of the accessory that receives it
-    const char* quantity_type;   ///< a mark of the type of the first argument, for checks
-    const char* accessory_type;  ///< a mark of the type of the last argument, for checks
+    int quantity;                  ///< number of the observed quantity
+    over_phase kind;               ///< what is computed from it
+    int accessory;                 ///< number of the accessory that receives it
+    std::uint64_t quantity_type;   ///< a mark of the type of the first argument, for checks
+    std::uint64_t accessory_type;  ///< a mark of the type of the last argument, for checks
 
     /// From enumerators of `observed` and `accessory`.
     template <class Q, class A>
     constexpr summary(Q observed, over_phase kind_, A receiver)
         : quantity(static_cast<int>(observed)), kind(kind_), accessory(static_cast<int>(receiver)),
-          quantity_type(&detail::type_mark<Q>), accessory_type(&detail::type_mark<A>) {}
+          quantity_type(detail::type_mark<Q>), accessory_type(detail::type_mark<A>) {}
 };
 
 }  // namespace myriad
@@ -65,7 +90,7 @@ template <class Model>
 inline constexpr int n_summary = n_summary_of<Model>();
 template <class Model>
 inline constexpr bool has_summaries = n_summary<Model> > 0;
-/// A summary without the type tags, which device code cannot use.
+/// A summary without the type tags.
 struct unmarked_summary {
     int quantity;
     over_phase kind;
@@ -102,15 +127,15 @@ inline constexpr companion companion_at = Varied::template companion_at<i>;
 
 /// Whether a type tag stands for a number, or for the model's enumeration of such components.
 template <class Model>
-constexpr bool marks_observed(const char* mark) {
-    bool own = mark == &type_mark<int> || mark == &type_mark<std::remove_cv_t<decltype(Model::n_observed)>>;
-    if constexpr (requires { typename Model::observed; }) own = own || mark == &type_mark<typename Model::observed>;
+constexpr bool marks_observed(std::uint64_t mark) {
+    bool own = mark == type_mark<int> || mark == type_mark<std::remove_cv_t<decltype(Model::n_observed)>>;
+    if constexpr (requires { typename Model::observed; }) own = own || mark == type_mark<typename Model::observed>;
     return own;
 }
 template <class Model>
-constexpr bool marks_accessory(const char* mark) {
-    bool own = mark == &type_mark<int> || mark == &type_mark<std::remove_cv_t<decltype(Model::n_accessory)>>;
-    if constexpr (requires { typename Model::accessory; }) own = own || mark == &type_mark<typename Model::accessory>;
+constexpr bool marks_accessory(std::uint64_t mark) {
+    bool own = mark == type_mark<int> || mark == type_mark<std::remove_cv_t<decltype(Model::n_accessory)>>;
+    if constexpr (requires { typename Model::accessory; }) own = own || mark == type_mark<typename Model::accessory>;
     return own;
 }
 

@@ -45,34 +45,38 @@ struct sampler {
         const R end = get_lane(s.data.t_end, i);
         set_lane(o.begin, i, get_lane(s.data.t_begin, i));
         set_lane(o.end, i, end);
-        // If time continues from phase to phase, the previous phase stored the sample at its end, up to rounding.
-        const R last = last_time(i);
-        const bool has_start =
-            args.carry_time && get_lane(s.data.phase, i) > 0 && abs(last - t) <= R(4) * epsilon_of<R> * abs(t);
+        // If time continues from phase to phase, the previous phase stored the samples at its end.
+        const R last = last_time(i), instant = same_instant(t);
+        const bool has_start = args.carry_time && get_lane(s.data.phase, i) > 0 && abs(last - t) <= instant;
         const auto passed = [&](R time) MYRIAD_LAMBDA {
-            return (has_start && (end < t ? time >= last : time <= last)) || (end < t ? time > t : end > t && time < t);
+            return (has_start && (end < t ? time >= last : time <= last)) ||
+                   (end < t ? time > t + instant : end > t && time < t - instant);
         };
         while (o.index[i] < args.sample.count && passed(sample_time(i))) ++o.index[i];
         set_next(i);
-        if (get_lane(o.next, i) == t) {
-            store(i, t, get_lanes<R>(s.data.y, i));
+        const auto is_at_start = [&](R time) MYRIAD_LAMBDA {
+            return end == t ? abs(time - t) <= instant : end < t ? time >= t : time <= t;
+        };
+        // A domain of length zero has one sample, however many it is divided into.
+        for (R before = never(i); is_at_start(get_lane(o.next, i)) && get_lane(o.next, i) != before;) {
+            before = get_lane(o.next, i);
+            store_values(i, before, [&](int c) MYRIAD_LAMBDA { return get_lane(s.data.y[c], i); });
             ++o.index[i];
             set_next(i);
         }
     }
 
     /// Stores the samples within the accepted trial steps, which end at t1, before they are committed. Where a step
-    /// ends at an event, a sample at the instant of it, as closely as its function's rounding errors let it be located,
-    /// shows the state before the action.
+    /// ends at an event, at a stop or at the end of the phase, a sample at the same instant shows the state there,
+    /// before any action.
     MYRIAD_FUNCTION void save(const trial_step<Method, S, n>& trial, const S& t1, const mask& accepted,
                               const mask& at_event) {
         if (args.sample.stored == nullptr) return;
         if (args.sample.every > 0) {
             save_steps(trial, t1, accepted);
         } else {
-            const S instant = S(R(16) * epsilon_of<R>) * abs(t1);
-            const S later = select(s.h < S(R(0)), t1 - instant, t1 + instant);
-            save_times(trial, t1, select(at_event, later, t1), accepted);
+            const S later = select(s.h < S(R(0)), t1 - same_instant(t1), t1 + same_instant(t1));
+            save_times(trial, t1, select(at_event | s.final_step, later, t1), accepted);
         }
     }
 
@@ -88,7 +92,7 @@ private:
         });
     }
 
-    /// `last` is t1 or, at an event, the last time that is the same instant.
+    /// `last` is t1 or, where the step ends there, the last time that is the same instant.
     MYRIAD_FUNCTION void save_times(const trial_step<Method, S, n>& trial, const S& t1, const S& last,
                                     const mask& accepted) {
         const S t0 = s.now();
@@ -138,6 +142,11 @@ private:
     MYRIAD_FUNCTION mask is_past(const S& t, const S& other) const {
         const mask backwards = s.h < S(R(0)), forwards = !backwards;
         return (backwards & (t <= other)) | (forwards & (t >= other));
+    }
+    /// Times that differ by less are one instant: sixteen roundings.
+    template <class T>
+    static MYRIAD_FUNCTION T same_instant(const T& t) {
+        return T(resolved_roundings<R>) * abs(t);
     }
     static MYRIAD_FUNCTION S time_rounding(const S& t) { return S(R(4) * epsilon_of<R>) * abs(t); }
 

@@ -203,6 +203,28 @@ MYRIAD_COMPARISONS(MYRIAD_DUAL_COMPARISON)
 namespace myriad::detail::inline MYRIAD_TARGET {
 
 template <class S, class Derivative>
+struct vanishing_product<dual<S, Derivative>> {
+    using D = dual<S, Derivative>;
+    static MYRIAD_FUNCTION D of(const D& factor, const D& d) {
+        return D(detail::scaled_unless_zero(factor.value, d.value),
+                 detail::scaled_unless_zero(factor.value, d.derivative) +
+                     detail::weighted_unless_zero(d.value, factor.derivative));
+    }
+};
+template <class S, class Derivative>
+struct vanishing_quotient<dual<S, Derivative>> {
+    using D = dual<S, Derivative>;
+    static MYRIAD_FUNCTION D of(const D& d, const D& by) {
+        const S quotient = detail::quotient_unless_zero(d.value, by.value);
+        return D(quotient, detail::quotient_unless_zero(
+                               d.derivative - detail::weighted_unless_zero(quotient, by.derivative), by.value));
+    }
+};
+
+// Where the slope of a function is infinite or NaN, as that of a square root at zero, a derivative is zero if that of
+// the argument is: sqrt(max(x, 0)) has the derivative zero for x < 0. Sums, products and quotients do not ask for that,
+// as they are too many.
+template <class S, class Derivative>
 struct functions<dual<S, Derivative>> {
     using D = dual<S, Derivative>;
     using f = functions<S>;
@@ -212,11 +234,11 @@ struct functions<dual<S, Derivative>> {
 
     static MYRIAD_FUNCTION D sqrt(const D& x) {
         const S root = f::sqrt(x.value);
-        return D(root, constant(real(0.5)) * x.derivative / root);
+        return D(root, detail::quotient_unless_zero(constant(real(0.5)) * x.derivative, root));
     }
     static MYRIAD_FUNCTION D cbrt(const D& x) {
         const S root = f::cbrt(x.value);
-        return D(root, x.derivative / (constant(real(3)) * root * root));
+        return D(root, detail::quotient_unless_zero(x.derivative, constant(real(3)) * root * root));
     }
     static MYRIAD_FUNCTION D abs(const D& x) {
         return D(f::abs(x.value), select(x.value < real(0), -x.derivative, x.derivative));
@@ -233,8 +255,12 @@ struct functions<dual<S, Derivative>> {
         return D(t, x.derivative * (constant(real(1)) + t * t));
     }
     static MYRIAD_FUNCTION S leg(const S& x) { return f::sqrt((constant(real(1)) - x) * (constant(real(1)) + x)); }
-    static MYRIAD_FUNCTION D asin(const D& x) { return D(f::asin(x.value), x.derivative / leg(x.value)); }
-    static MYRIAD_FUNCTION D acos(const D& x) { return D(f::acos(x.value), -x.derivative / leg(x.value)); }
+    static MYRIAD_FUNCTION D asin(const D& x) {
+        return D(f::asin(x.value), detail::quotient_unless_zero(x.derivative, leg(x.value)));
+    }
+    static MYRIAD_FUNCTION D acos(const D& x) {
+        return D(f::acos(x.value), detail::quotient_unless_zero(-x.derivative, leg(x.value)));
+    }
     static MYRIAD_FUNCTION D atan(const D& x) {
         return D(f::atan(x.value), x.derivative / (constant(real(1)) + x.value * x.value));
     }
@@ -271,22 +297,27 @@ struct functions<dual<S, Derivative>> {
         return D(t, x.derivative * (constant(real(1)) - t) * (constant(real(1)) + t));
     }
 
+    // Zero where the exponential is, as exp(n log(x)) at x = 0.
     static MYRIAD_FUNCTION D exp(const D& x) {
         const S e = f::exp(x.value);
-        return D(e, x.derivative * e);
+        return D(e, detail::weighted_unless_zero(e, x.derivative));
     }
     static MYRIAD_FUNCTION D exp2(const D& x) {
         const S e = f::exp2(x.value);
-        return D(e, constant(ln_2) * x.derivative * e);
+        return D(e, detail::weighted_unless_zero(e, constant(ln_2) * x.derivative));
     }
-    static MYRIAD_FUNCTION D log(const D& x) { return D(f::log(x.value), x.derivative / x.value); }
-    static MYRIAD_FUNCTION D log2(const D& x) { return D(f::log2(x.value), constant(log2_e) * x.derivative / x.value); }
+    static MYRIAD_FUNCTION D log(const D& x) {
+        return D(f::log(x.value), detail::quotient_unless_zero(x.derivative, x.value));
+    }
+    static MYRIAD_FUNCTION D log2(const D& x) {
+        return D(f::log2(x.value), detail::quotient_unless_zero(constant(log2_e) * x.derivative, x.value));
+    }
     static MYRIAD_FUNCTION D log10(const D& x) {
-        return D(f::log10(x.value), constant(log10_e) * x.derivative / x.value);
+        return D(f::log10(x.value), detail::quotient_unless_zero(constant(log10_e) * x.derivative, x.value));
     }
     static MYRIAD_FUNCTION D expm1(const D& x) { return D(f::expm1(x.value), x.derivative * f::exp(x.value)); }
     static MYRIAD_FUNCTION D log1p(const D& x) {
-        return D(f::log1p(x.value), x.derivative / (constant(real(1)) + x.value));
+        return D(f::log1p(x.value), detail::quotient_unless_zero(x.derivative, constant(real(1)) + x.value));
     }
 
     // y x^(y - 1), not y x^y / x, which is NaN at x = 0; x^0 has derivative zero there too.
@@ -294,7 +325,8 @@ struct functions<dual<S, Derivative>> {
     static MYRIAD_FUNCTION D pow_of_base(const D& x, const B& exponent) {
         const S y = to_kind<S>(exponent);
         const S slope = y * f::pow(x.value, y - constant(real(1)));
-        return D(f::pow(x.value, y), select(y == constant(real(0)), y, slope) * x.derivative);
+        return D(f::pow(x.value, y),
+                 detail::scaled_unless_zero(select(y == constant(real(0)), y, slope), x.derivative));
     }
     template <class B>
     static MYRIAD_FUNCTION D powr(const D& x, const B& exponent) {
@@ -302,26 +334,27 @@ struct functions<dual<S, Derivative>> {
         const E y = to_kind<E>(exponent), one(real(1));
         // here x^0 is 1, though powr(0, 0) is not
         const S slope = select(y == one, S(one), y * f::powr(x.value, y - one));
-        return D(f::powr(x.value, y), slope * x.derivative);
+        return D(f::powr(x.value, y), detail::scaled_unless_zero(slope, x.derivative));
     }
     template <class A>
     static MYRIAD_FUNCTION D pow_of_exponent(const A& base, const D& y) {
         const S x = to_kind<S>(base);
         const S power = f::pow(x, y.value);
-        return D(power, power * f::log(x) * y.derivative);
+        return D(power, of_exponent(power, x, y.derivative));
     }
     static MYRIAD_FUNCTION D pow(const D& x, const D& y) {
         const D of_base = pow_of_base(x, y.value);
         // With a constant exponent, the logarithm of a non-positive base must not spoil the result.
-        return D(of_base.value, of_base.derivative + scaled_unless_zero(of_base.value * f::log(x.value), y.derivative));
+        return D(of_base.value, of_base.derivative + of_exponent(of_base.value, x.value, y.derivative));
     }
     static MYRIAD_FUNCTION D atan2(const D& y, const D& x) {
         const S square = x.value * x.value + y.value * y.value;
-        return D(f::atan2(y.value, x.value), (x.value * y.derivative - y.value * x.derivative) / square);
+        return D(f::atan2(y.value, x.value),
+                 detail::quotient_unless_zero(x.value * y.derivative - y.value * x.derivative, square));
     }
     static MYRIAD_FUNCTION D hypot(const D& x, const D& y) {
         const S length = f::hypot(x.value, y.value);
-        return D(length, (x.value * x.derivative + y.value * y.derivative) / length);
+        return D(length, detail::quotient_unless_zero(x.value * x.derivative + y.value * y.derivative, length));
     }
     static MYRIAD_FUNCTION D copysign(const D& x, const D& sign) {
         const S one = constant(real(1));
@@ -348,6 +381,10 @@ struct functions<dual<S, Derivative>> {
     }
 
 private:
+    // The derivative of a power by its exponent: zero where the power is, though its base has an infinite logarithm.
+    static MYRIAD_FUNCTION Derivative of_exponent(const S& power, const S& base, const Derivative& d) {
+        return detail::scaled_unless_zero(detail::weighted_unless_zero(power, f::log(base)), d);
+    }
     static constexpr real pi = real(3.14159265358979323846L);
     static constexpr real ln_2 = real(0.693147180559945309417L);
     static constexpr real log2_e = real(1.44269504088896340736L);

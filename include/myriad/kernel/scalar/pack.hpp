@@ -50,8 +50,8 @@ public:
     explicit operator B() const {
         static_assert(
             sizeof(B) == 0,
-            "this model branches on its state: use myriad::select(condition, a, b), or declare `static constexpr "
-            "bool scalar_only = true;` in the model");
+            "this model branches on its state: use myriad::select(condition, a, b), for std::min and std::max "
+            "myriad::min and myriad::max, or declare `static constexpr bool scalar_only = true;` in the model");
         return false;
     }
 

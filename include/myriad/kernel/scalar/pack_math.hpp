@@ -28,6 +28,7 @@
 #include "myriad/kernel/scalar/exponential.hpp"
 #include "myriad/kernel/scalar/math.hpp"
 #include "myriad/kernel/scalar/pack.hpp"
+#include "myriad/kernel/scalar/standard_functions.hpp"
 #include "myriad/kernel/scalar/trigonometry.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {

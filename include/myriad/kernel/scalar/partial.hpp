@@ -136,10 +136,15 @@ MYRIAD_FUNCTION auto derivative_is_finite(const partials<S, count>& d) {
     return finite;
 }
 
-/// factor * d, but zero where d is, even if the factor is not finite.
+/// factor * d, but zero where d is, even if the factor is not finite. Of dual numbers, for which dual.hpp has another,
+/// that holds of each product in it.
+template <class S>
+struct vanishing_product {
+    static MYRIAD_FUNCTION S of(const S& factor, const S& d) { return select(d == S(real_of<S>(0)), d, factor * d); }
+};
 template <class S>
 MYRIAD_FUNCTION S scaled_unless_zero(const S& factor, const S& d) {
-    return select(d == S(real_of<S>(0)), d, factor * d);
+    return vanishing_product<S>::of(factor, d);
 }
 template <class S>
 MYRIAD_FUNCTION partial<S> scaled_unless_zero(const S& factor, const partial<S>& d) {
@@ -148,6 +153,39 @@ MYRIAD_FUNCTION partial<S> scaled_unless_zero(const S& factor, const partial<S>&
 template <class S, int count>
 MYRIAD_FUNCTION partials<S, count> scaled_unless_zero(const S& factor, const partials<S, count>& d) {
     return partials<S, count>::each([&](auto i) MYRIAD_LAMBDA { return detail::scaled_unless_zero(factor, d.in[i]); });
+}
+
+/// weight * d, but zero where the weight is, even if d is not finite.
+template <class S>
+MYRIAD_FUNCTION S weighted_unless_zero(const S& weight, const S& d) {
+    return detail::scaled_unless_zero(d, weight);
+}
+template <class S>
+MYRIAD_FUNCTION partial<S> weighted_unless_zero(const S& weight, const partial<S>& d) {
+    return d.zero ? d : partial<S>(detail::scaled_unless_zero(d.value, weight));
+}
+template <class S, int count>
+MYRIAD_FUNCTION partials<S, count> weighted_unless_zero(const S& weight, const partials<S, count>& d) {
+    return partials<S, count>::each([&](auto i)
+                                        MYRIAD_LAMBDA { return detail::weighted_unless_zero(weight, d.in[i]); });
+}
+
+/// d / by, but zero where d is, even if by is zero.
+template <class S>
+struct vanishing_quotient {
+    static MYRIAD_FUNCTION S of(const S& d, const S& by) { return select(d == S(real_of<S>(0)), d, d / by); }
+};
+template <class S>
+MYRIAD_FUNCTION S quotient_unless_zero(const S& d, const S& by) {
+    return vanishing_quotient<S>::of(d, by);
+}
+template <class S>
+MYRIAD_FUNCTION partial<S> quotient_unless_zero(const partial<S>& d, const S& by) {
+    return d.zero ? d : partial<S>(detail::quotient_unless_zero(d.value, by));
+}
+template <class S, int count>
+MYRIAD_FUNCTION partials<S, count> quotient_unless_zero(const partials<S, count>& d, const S& by) {
+    return detail::scaled_unless_zero(functions<S>::reciprocal(by), d);
 }
 
 /// a b + c

@@ -16,6 +16,9 @@ template <class Model, class S>
 struct stop_state<Model, S, true> {
     S next;                                                // the nearest stop time not yet reached, or t_end
     vec<std::int32_t, n_stop<Model>> number[lanes_of<S>];  // of the next stop of each kind
+    // of each kind: when the stop before that number has acted, for as long as that is its time
+    vec<real_of<S>, n_stop<Model>> acted[lanes_of<S>];
+    bool backwards[lanes_of<S>];  // times decrease in this phase
 };
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET

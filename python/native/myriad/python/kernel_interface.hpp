@@ -23,6 +23,7 @@ struct kernel_library {
     void (*run)(const void* arguments, const detail::run_options* options, int most_threads, team_starter start,
                 detail::run_statistics* result);
     const void* functions;               ///< `instance_functions` of the real type
+    const void* behaviour;               ///< `behaviour_function` of the real type
     const char* compiler = __VERSION__;  ///< of the file that makes this
 };
 

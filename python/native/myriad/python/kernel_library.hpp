@@ -5,6 +5,7 @@
 
 #include "myriad/python/kernel_interface.hpp"
 // after the interface, which needs no packs
+#include "myriad/host/checks/behaviour.hpp"
 #include "myriad/host/report/functions_of.hpp"
 #include "myriad/kernel/stepper/method_check.hpp"
 #include "myriad/methods.hpp"
@@ -31,12 +32,16 @@ void run_library(const void* arguments, const run_options* options, int most_thr
 template <class Model, class Method, class R>
 inline constexpr instance_functions<R> functions_in_library = functions_of<Model, Method, R>();
 
+template <class Model, class R>
+inline constexpr behaviour_function<R> behaviour_in_library = &show_behaviour<Model, R>;
+
 template <class Model, class Method, class R>
 inline constexpr python::kernel_library library_of{
     .facts = compiled_facts_of<Model, Method, R>,
     .instruction_set = static_cast<std::int32_t>(openmp::instruction_set::MYRIAD_INSTRUCTION_SET),
     .run = &run_library<Model, Method, R>,
     .functions = &functions_in_library<Model, Method, R>,
+    .behaviour = &behaviour_in_library<Model, R>,
 };
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET
