@@ -8,9 +8,9 @@
 // limit: integrate_ensemble<keller_miksis, cash_karp> registers 144 stack 0 spill 0
 // limit: integrate_ensemble<keller_miksis, verner_7> registers 255 stack 0 spill 0
 // limit: integrate_ensemble<keller_miksis, dormand_prince_8> registers 176 stack 0 spill 0
-// limit: integrate_ensemble<relief_valve_model, cash_karp> registers 118 stack 272 spill 28
-// limit: integrate_ensemble<relief_valve_model, verner_7> registers 120 stack 272 spill 0
-// limit: integrate_ensemble<relief_valve_model, dormand_prince_8> registers 120 stack 272 spill 0
+// limit: integrate_ensemble<relief_valve_model, cash_karp> registers 128 stack 288 spill 28
+// limit: integrate_ensemble<relief_valve_model, verner_7> registers 128 stack 288 spill 0
+// limit: integrate_ensemble<relief_valve_model, dormand_prince_8> registers 128 stack 288 spill 0
 #include <myriad/cuda/kernel.cuh>
 #include <myriad/methods.hpp>
 
