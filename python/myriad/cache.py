@@ -39,7 +39,7 @@ def obtain(made_from: bytes, make: Callable[[str], None], load: Callable[[str], 
     return Obtained(loaded, hit, None if hit else objection or None)
 
 
-def functions(by: _core.Compiler, source: str, make: Callable[[str], object]) -> ctypes.CDLL:
+def functions(by: _core.Compiler, source: str, make: Callable[[str], None]) -> ctypes.CDLL:
     """The functions of a library that `make(folder)` has a compiler make of a source, for `ctypes`."""
     made_from = by.made_from(source)
 

@@ -15,8 +15,11 @@ namespace myriad::inline MYRIAD_TARGET {
 template <class I>
 class wide_integer {
 public:
+    /// Of one lane.
     using value_type = std::int64_t;
+    /// The same.
     using lane_type = std::int64_t;
+    /// What comparisons give.
     using mask_type = typename I::mask_type;
 
     wide_integer() = default;
@@ -24,15 +27,18 @@ public:
     /// The low 32 bits, as an integer of 32 bits takes them of one of 64.
     MYRIAD_FUNCTION operator I() const { return low_; }
 
+    /// The number in a lane.
     static MYRIAD_FUNCTION std::int64_t get_lane(const wide_integer& a, int lane) {
         const auto low = static_cast<std::uint32_t>(I::get_lane(a.low_, lane));
         const auto high = static_cast<std::uint32_t>(I::get_lane(a.high_, lane));
         return static_cast<std::int64_t>(std::uint64_t{high} << 32 | low);
     }
+    /// Puts a number into a lane.
     static MYRIAD_FUNCTION void set_lane(wide_integer& a, int lane, std::int64_t value) {
         I::set_lane(a.low_, lane, low_of(value));
         I::set_lane(a.high_, lane, high_of(value));
     }
+    /// a where the mask holds, else b.
     static MYRIAD_FUNCTION wide_integer blend(const mask_type& mask, const wide_integer& a, const wide_integer& b) {
         wide_integer made;
         made.low_ = I::blend(mask, a.low_, b.low_);
