@@ -22,7 +22,9 @@ public:
     /// What comparisons give.
     using mask_type = typename I::mask_type;
 
+    /// Not set.
     wide_integer() = default;
+    /// The same number in every lane.
     MYRIAD_FUNCTION wide_integer(std::int64_t value) : low_(low_of(value)), high_(high_of(value)) {}
     /// The low 32 bits, as an integer of 32 bits takes them of one of 64.
     MYRIAD_FUNCTION operator I() const { return low_; }
