@@ -250,8 +250,8 @@ private:
             if (!reached.all_left) middle = step.values_at(R(0.5));
         }
         R approach = R(0);
-        bool leaves =
-            false;  // the surface where it fired last, so that its crossing is later, however near it is to zero
+        // It leaves the surface where it fired last, so that its crossing is later, however near it is to zero.
+        bool leaves = false;
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
             if (redo.target != j) continue;
