@@ -26,6 +26,18 @@ struct swing {
     }
 };
 
+/// A slope that is nearly zero at whole times: sin^2(pi t) + drift.
+struct pulses {
+    enum state { y, n_state };
+    enum parameter { drift, n_parameter };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(const auto& t, const myriad::vec<R, n_state>&, const auto& p) {
+        const auto s = myriad::sinpi(t);
+        return myriad::vec<R, n_state>{R(s * s + p[drift])};
+    }
+};
+
 /// Van der Pol's oscillator, whose jumps take 1 / mu of the time between them.
 struct relaxation {
     enum state { x, v, n_state };

@@ -95,14 +95,29 @@ TEST_CASE("the default first step follows from slope, tolerance and domain") {
     CHECK(first_step(lines<double>(0, 10, 4, 20)) == Approx(5 * usual));
     CHECK(first_step(lines<double>(0, 10), {.relative_tolerance = 1e-13, .absolute_tolerance = 1e-13}) ==
           Approx(2 * std::pow(1e-13, 0.2)));
-    CHECK(first_step(lines<double>(0, 10, 1e-3)) == Approx(1));  // a tenth of the domain
+    CHECK(first_step(lines<double>(0, 10, 1e-3)) == Approx(0.954915));  // nearly a tenth of the domain
     CHECK(first_step(lines<double>(0, 10, 1e300)) < 1e-300);
     for (const double rest : {0.0, 1e-300, 1e-9}) CHECK(first_step(lines<double>(0, 10, rest)) == Approx(1e-8));
-    CHECK(first_step(lines<double>(0, 1e-6)) == Approx(1e-7));
+    CHECK(first_step(lines<double>(0, 1e-6)) == Approx(0.954915e-7));
     CHECK(first_step(lines<double>(0, 1e-9)) == Approx(1e-18).margin(0));  // which changes nothing
     CHECK(first_step(lines<double>(0, 10), {.maximum_step = 1e-3}) == Approx(1e-3));
     CHECK(first_step(lines<double>(0, 10, 1e9), {.minimum_step = 0.25}) == Approx(0.25));
     CHECK(first_step<myriad::rosenbrock_23>(lines<double>(0, 10)) > 0);
+}
+
+TEST_CASE("a domain of a round number of periods of a forcing is not stepped over at whole periods") {
+    for (const double periods : {80.0, 400.0, 900.0, 7200.0}) {
+        const auto end_of = [&]<class Method>(Method) {
+            myriad::ensemble<pulses> e(5);
+            e.state(pulses::y) = 0.0;
+            e.parameter(pulses::drift) = 1e-6;
+            e.time_domain(0, periods);
+            CHECK(myriad::solve<Method>(test_device(), e).count(status::success) == 5);
+            return e.state(pulses::y)[0];
+        };
+        CHECK(end_of(cash_karp{}) == Approx((0.5 + 1e-6) * periods).epsilon(1e-5));
+        CHECK(end_of(myriad::dormand_prince_5{}) == Approx((0.5 + 1e-6) * periods).epsilon(1e-5));
+    }
 }
 
 TEST_CASE("a state of zero without an absolute tolerance does not make the first step vanish") {
