@@ -12,8 +12,8 @@ from .least_squares import Objective, from_logarithms, logarithms
 if TYPE_CHECKING:
     from .hints import Array
 
-_running, _converged, _stopped, _failed = range(4)
-status_names = ("running", "converged", "iterations", "failed")
+_running, _converged, _stopped, _failed, _interrupted = range(5)
+status_names = ("running", "converged", "iterations", "failed", "interrupted")
 _largest_damping = 1e16  # beyond, a step changes nothing
 
 
@@ -33,7 +33,10 @@ class Descent:
             place = np.arange(len(varied)), pinned
             self.least[place] = self.most[place] = self.varied[place]
         #: the loss, J^T J, J^T r and half the sum of squares of r, which is the loss if that is of least squares
-        self.loss, self.normal, self.gradient, self.squares = self._evaluate(self.varied)
+        self.loss, self.normal, self.gradient, self.squares, residuals, jacobian = self._evaluate(self.varied)
+        best = np.argmin(self.loss)
+        #: residuals and their derivatives where the least loss is: copies, as there are large ones of all starts
+        self.best = residuals[best].copy(), jacobian[best].copy()
         count = len(varied)
         self.state = np.where(np.isfinite(self.loss), _running, _failed)
         self.damping, self.growth = np.full(count, 1e-3), np.full(count, 2.0)
@@ -49,19 +52,24 @@ class Descent:
         jacobian *= inner[:, None, :]
         return loss, residuals, jacobian
 
-    def _evaluate(self, varied: Array) -> tuple[Array, Array, Array, Array]:
-        """The loss, infinite where there is none, J^T J, the gradient J^T r and r^T r / 2 at points in rows."""
+    def _evaluate(self, varied: Array) -> tuple[Array, Array, Array, Array, Array, Array]:
+        """The loss, infinite where there is none, J^T J, the gradient J^T r, r^T r / 2, r and J at points in rows."""
         loss, residuals, jacobian = self.derivatives(varied)
         transposed = jacobian.transpose(0, 2, 1)
         with np.errstate(over="ignore", invalid="ignore"):
             return np.where(np.isfinite(loss), loss, np.inf), transposed @ jacobian, \
-                (transposed @ residuals[..., None])[..., 0], 0.5 * np.sum(residuals * residuals, axis=1)
+                (transposed @ residuals[..., None])[..., 0], 0.5 * np.sum(residuals * residuals, axis=1), \
+                residuals, jacobian
 
     def run(self, iterations: int) -> Descent:
-        """Iterates until no start goes on, or so many times."""
-        for _ in range(iterations):
-            if not self._step():
-                break
+        """Iterates until no start goes on, or so many times. After Ctrl-C all is as the last iteration left it."""
+        try:
+            for _ in range(iterations):
+                if not self._step():
+                    break
+        except KeyboardInterrupt:
+            self.state[self.state == _running] = _interrupted
+            raise
         self.state[self.state == _running] = _stopped
         return self
 
@@ -97,7 +105,8 @@ class Descent:
 
     def _take(self, on: Array, to: Array, predicted: Array) -> None:
         """Tries the steps, and takes those that lessen the loss."""
-        (new, normal, gradient, squares), old, size = self._evaluate(to), self.loss[on], self.squares[on]
+        (new, normal, gradient, squares, residuals, jacobian), old = self._evaluate(to), self.loss[on]
+        size = self.squares[on]
         self.iterations[on] += 1
         with np.errstate(divide="ignore", invalid="ignore"):
             ratio = (old - new) / predicted
@@ -106,6 +115,9 @@ class Descent:
         self.varied[taken], self.loss[taken] = to[better], new[better]
         self.normal[taken], self.gradient[taken] = normal[better], gradient[better]
         self.squares[taken] = squares[better]
+        best = np.flatnonzero(better & (on == np.argmin(self.loss)))
+        if best.size:
+            self.best = residuals[best[0]].copy(), jacobian[best[0]].copy()
         factor = np.maximum(1 / 3, 1 - (2 * np.clip(ratio[better], 0, 1) - 1) ** 3)
         self.damping[taken] = np.maximum(self.damping[taken] * factor, 1e-15)
         self.growth[taken] = 2

@@ -18,13 +18,13 @@ from .expression import Node
 from .inputs import whole
 from .least_squares import LeastSquares, Objective, from_logarithms, logarithms
 from .profile import Profile
+from .run import Interrupted, Run
 from .student import student_quantile
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from .hints import AnyModel, Array, ByComponent, SomeComponents
-    from .run import Run
 
 __all__ = ["Fit", "fit"]
 
@@ -40,7 +40,7 @@ class Fit(Generic[SomeObjective]):
         values = from_logarithms(problem.free, descent.varied)
         #: of `my.fit` half the sum of squares of (model - data) / sigma; infinite: no solution
         self.loss: Array = descent.loss
-        #: "converged", "iterations" if there were too few, "failed"
+        #: "converged", "iterations" if there were too few, "failed", "interrupted" by Ctrl-C
         self.status = [status_names[s] for s in descent.state]
         self.iterations: Array = descent.iterations  #: that each start took
         self.starts = _by_name(problem, from_logarithms(problem.free, starts))  #: where each began, by name
@@ -50,9 +50,8 @@ class Fit(Generic[SomeObjective]):
             raise Error("no start of the fit has a solution up to the last time of the data: look at one by "
                         "my.least_squares(...).run(values).report, and give narrower bounds")
         self.best = {name: float(of[self.index]) for name, of in self.values.items()}  #: the best values, by name
-        _, residuals, jacobian = descent.derivatives(descent.varied[[self.index]])
-        self.residuals: Array = residuals[0]  #: in the order of `problem.labels`
-        self._jacobian: Array = jacobian[0]
+        residuals, self._jacobian = descent.best
+        self.residuals: Array = residuals  #: in the order of `problem.labels`
         self._limits = iterations, descent.tolerance
         self._assess(descent)
 
@@ -103,7 +102,11 @@ class Fit(Generic[SomeObjective]):
         if self.at_bound:
             self.notes.append(f"the fit ended at a bound of {', '.join(self.at_bound)}, where confidence intervals do "
                               "not hold: widen the bounds, or think why")
-        if self.status[self.index] != "converged":
+        interrupted = self.status.count("interrupted")
+        if interrupted:
+            self.notes.append(f"Ctrl-C ended the fit while {interrupted} of {len(self.status)} starts were on their "
+                              "way: starts=fit.values goes on from here")
+        elif self.status[self.index] != "converged":
             self.notes.append("the best start was still on its way: give more iterations=")
         failed = self.status.count("failed")
         if failed:
@@ -203,7 +206,8 @@ def fit(model: AnyModel, data: Any, *, free: ByComponent, starts: int | ByCompon
     seed        of the hypercube
 
     Further arguments are those of `solve`: method, rtol, atol, device ... All starts are integrated as one ensemble,
-    with sensitivities, in every iteration."""
+    with sensitivities, in every iteration. Ctrl-C raises `myriad.Interrupted`, whose `fit` is that of the iterations
+    that were done."""
     problem = LeastSquares(model, data, free, sweep, start, begin, sigma, options)
     return minimised(problem, starts, iterations, tolerance, seed)
 
@@ -229,4 +233,11 @@ def minimised(problem: SomeObjective, starts: int | ByComponent, iterations: int
         least, most = (logarithms(problem.free, end) for end in problem.bounds)
         varied = least + hypercube(count, len(problem.free), np.random.default_rng(seed)) * (most - least)
     limit = whole(iterations, "iterations")
-    return Fit(problem, Descent(problem, varied, tolerance).run(limit), varied, limit)
+    descent = Descent(problem, varied, tolerance)
+    try:
+        descent.run(limit)
+    except KeyboardInterrupt:
+        if not np.isfinite(descent.loss).any():
+            raise
+        raise Interrupted(None, Fit(problem, descent, varied, limit)) from None
+    return Fit(problem, descent, varied, limit)

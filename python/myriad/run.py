@@ -33,12 +33,15 @@ _own_names = ("instance", "phase", "sample", "time", "t_last", "status")
 
 
 class Interrupted(KeyboardInterrupt):
-    """Ctrl-C ended a call of `solve`; `run` has the instances that were done, and the others as not_started, or as
-    interrupted if they were under way and took more than half a second longer."""
+    """Ctrl-C ended a call. Of `solve` and of studies `run` has the instances that were done, and the others as
+    not_started, or as interrupted if they were under way and took more than half a second longer. Of `fit` `fit` has
+    the best values so far, and `run` is None."""
 
-    def __init__(self, run: Any) -> None:
-        super().__init__(f"{run.done} of {run.size} instances were done; .run has them")
+    def __init__(self, run: Any, fit: Any = None) -> None:
+        super().__init__(f"{run.done} of {run.size} instances were done; .run has them" if fit is None else
+                         f"the least loss so far is {fit.loss[fit.index]:.6g}; .fit has its values")
         self.run = run
+        self.fit = fit
 
 
 class Report:

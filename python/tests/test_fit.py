@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: MIT
 """Fits of models to data, compared with SciPy's and with linear regression; profile likelihoods in closed form."""
 
+import os
+import signal
+
 import numpy as np
 import pytest
 
 import myriad as my
+from myriad.least_squares import LeastSquares
 from myriad.student import student_quantile
 
 x, w = my.states("x w")
@@ -250,3 +254,35 @@ def test_starts_without_a_solution_are_counted_and_none_at_all_is_an_error():
     assert any("1 of 2 starts had no solution" in note for note in fit.notes)
     with pytest.raises(my.Error, match="no start of the fit has a solution"):
         my.fit(explosive, data, free={k: (0.1, 10)}, starts={k: [8.0]}, **call)
+
+
+def test_ctrl_c_in_a_fit_keeps_the_best_point(monkeypatch):
+    evaluate, losses = LeastSquares.evaluate, []
+
+    def interrupted(self, values):
+        if len(losses) == 4:
+            losses.append(np.inf)
+            os.kill(os.getpid(), signal.SIGINT)
+        result = evaluate(self, values)
+        losses.append(result[0].min())
+        return result
+
+    monkeypatch.setattr(LeastSquares, "evaluate", interrupted)
+    given = {"free": free, "interpreted": True, **usual}
+    with pytest.raises(my.Interrupted, match=r"the least loss so far is .*; \.fit has its values") as raised:
+        my.fit(model, measured(), starts=5, **given)
+    fit = raised.value.fit
+    assert len(losses) == 5 and fit.loss[fit.index] == min(losses) and raised.value.run is None
+    assert fit.status[fit.index] == "interrupted" and any("Ctrl-C ended the fit" in note for note in fit.notes)
+    best = list(fit.best.values())
+    assert fit.problem.loss(best) == pytest.approx(min(losses), rel=1e-12)
+    np.testing.assert_allclose(fit.residuals, fit.problem.residuals(best), rtol=1e-9)
+    whole = my.fit(model, measured(), starts=fit.values, **given)
+    assert whole.status[whole.index] == "converged" and whole.loss[whole.index] < min(losses[:4])
+
+
+def test_ctrl_c_before_a_fit_has_a_solution_is_a_mere_interrupt(monkeypatch):
+    monkeypatch.setattr(LeastSquares, "evaluate", lambda self, values: os.kill(os.getpid(), signal.SIGINT))
+    with pytest.raises(KeyboardInterrupt) as raised:
+        my.fit(model, good, free={k: (0.1, 10)}, start={x: 1, w: 0}, interpreted=True)
+    assert not isinstance(raised.value, my.Interrupted)
