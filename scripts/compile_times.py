@@ -7,7 +7,9 @@
 CPU seconds (user and system, the least of the repetitions) and peak memory of the compiler. BUILD has a
 compile_commands.json, and with --slowest a finished Ninja build. With --budget a table of limits: a file's seconds are
 divided by those of the reference file that the table names, compiled in the same run by the same compiler, so that a
-slower machine finds the same; peak memory is limited in MB. Exit status: 0, 1 over the budget, 2 nothing to compile.
+slower machine finds the same; peak memory is limited in MB. A file over its budget is compiled anew beside the
+reference, up to three times, since what else a machine does may delay one of them. Exit status: 0, 1 over the budget,
+2 nothing to compile.
 """
 import argparse
 import json
@@ -96,6 +98,7 @@ def main():
             entry = next(e for e in entries if "MYRIAD_MODEL_FILE" not in e["command"])
             words = command_of(entry, output)
             words[words.index(entry["file"])] = str(arguments.budget.parent / reference)
+            reference_words, reference_folder = words, entry["directory"]
             unit = cost(words, entry["directory"], arguments.repeat)
             if unit is None:
                 print(f"{reference} does not compile", file=sys.stderr)
@@ -106,10 +109,15 @@ def main():
             if found is None:
                 print(f"{entry['file']} does not compile", file=sys.stderr)
                 return 2
-            line = f"{found[0]:6.2f} s {found[1]:5.0f} MB  {os.path.relpath(entry['file'], root)}"
+            name, tries = os.path.relpath(entry["file"], root), 0
             if arguments.budget:
-                name = next(name for name in rows if entry["file"].endswith("/" + name))
-                ratio, (most, memory) = found[0] / unit[0], rows[name]
+                most, memory = rows[next(name for name in rows if entry["file"].endswith("/" + name))]
+                while found[0] / unit[0] > most and tries < 3:
+                    unit = cost(reference_words, reference_folder, 1)
+                    found, tries = cost(words, entry["directory"], 1), tries + 1
+            line = f"{found[0]:6.2f} s {found[1]:5.0f} MB  {name}"
+            if arguments.budget:
+                ratio = found[0] / unit[0]
                 line += f": {ratio:.2f} times the reference's {unit[0]:.2f} s (limit {most:.2f}, {memory:.0f} MB)"
                 if ratio > most or found[1] > memory:
                     line += "  OVER THE BUDGET"

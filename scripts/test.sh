@@ -112,8 +112,8 @@ build() {
 
 # The kernels that are compiled for GPUs without --all: one file for each feature that the kernels in tests/cuda lack.
 # Together they take half a minute for each that is added here.
-features=(controller_policies dae duffing first_step_models function_values hooked_steps jumps own_method phased queued
-    random_draws stiff_tangents summarised tangent_jumps team_kernels with_events)
+features=(controller_policies dae first_step_models function_values hooked_steps jumps phased queued
+    random_draws stiff_tangents tangent_jumps with_events)
 
 # The programs that test both backends in one program without a GPU, and with --all every kernel, for GPUs alone
 # (tests/cuda/budgets.cu has the benchmarks' kernels, and scripts/case_studies.sh builds the case studies).
