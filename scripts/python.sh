@@ -23,9 +23,9 @@ installed.
 Options:
   --required  exit status 1 instead of 77
   --others    also tests of work with other packages (JAX, Dask, SALib and more), whose download takes minutes
-  --full      an argument of pytest: also tests that are marked as long, with NVRTC and a wheel as users get it;
-              without it the wheel is optimised less, and is for tests alone
-  --all       an argument of pytest: what --full does, and all models for all GPUs by NVRTC, which takes minutes
+  --full      an argument of pytest: also tests that are marked as long, with NVRTC
+  --all       an argument of pytest: what --full does, all models for all GPUs by NVRTC, which takes minutes, and a
+              wheel as users get it; without it the wheel is optimised less, and is for tests alone
   --help      this text
 END
 }
@@ -33,7 +33,7 @@ END
 missing_status=77
 extras=(test)
 if has_command nvidia-smi; then extras+=(cuda); fi
-full=no
+as_for_users=no
 while (($#)); do
     case $1 in
         --help | -h) usage; exit 0 ;;
@@ -44,7 +44,8 @@ while (($#)); do
     shift
 done
 
-if [[ " $* " == *" --full "* || " $* " == *" --all "* ]]; then full=yes extras+=(cuda); fi
+if [[ " $* " == *" --full "* || " $* " == *" --all "* ]]; then extras+=(cuda); fi
+if [[ " $* " == *" --all "* ]]; then as_for_users=yes; fi
 
 require_packages g++ cmake ninja-build python3 python3-dev python3-venv libxsimd-dev nlohmann-json3-dev
 rm -rf "$wheels" "$environment"
@@ -63,7 +64,7 @@ if ! { python3 -m venv "$environment" &&
 fi
 started=$SECONDS
 definitions=()
-if [[ $full == no ]]; then
+if [[ $as_for_users == no ]]; then
     definitions=(-Ccmake.define.CMAKE_CXX_FLAGS_RELEASE="-O1 -DNDEBUG -DMYRIAD_OUT_OF_LINE")
 fi
 quietly build/python-wheel.log "${pip[@]}" wheel "${definitions[@]}" --no-build-isolation --no-deps \

@@ -34,8 +34,10 @@ def shared_functions(build, nm, entries):
                                  check=True).stdout
         for line in symbols.splitlines():
             name = re.match(r"[0-9a-f]+ W (.*)", line)
-            # The kernels' names carry their instruction set; clang++'s own only ends the program.
-            if name and not re.search(r"openmp_|instruction_set\)|__clang_call_terminate", name.group(1)):
+            # The names of kernels and of xsimd's functions carry their instruction set; clang++'s own only ends the
+            # program.
+            own = r"openmp_|instruction_set\)|xsimd::kernel::|__clang_call_terminate"
+            if name and not re.search(own, name.group(1)):
                 wrong.append(f"{source} shares {name.group(1)}: put MYRIAD_FUNCTION before it")
     return seen, wrong
 
