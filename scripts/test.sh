@@ -8,7 +8,7 @@ source scripts/lib.sh
 
 all_steps=(ci programs python docs cuda strict asan tsan clang)
 usual_steps=(ci python)
-full_steps=(ci programs python docs cuda strict asan tsan)
+full_steps=(ci programs python docs cuda asan tsan)
 
 usage() {
     cat <<'END'
@@ -30,11 +30,11 @@ them, and there are these steps. All run in the order ci, programs, python, and 
             cannot be installed)
   cuda      the tests' kernels compile for one GPU and as PTX, some within limits of registers and stack; a program with
             both backends runs without a GPU (skipped without nvcc)
-  strict    all models in packs, for AVX2: events, output and reductions; scalar lanes and packs agree bit for bit
   asan      address and undefined-behaviour sanitizer
   tsan      thread sanitizer
 
 With --all also this.
+  strict    all models in packs, for AVX2: events, output and reductions; scalar lanes and packs agree bit for bit
   clang     clang++, warnings are errors
 
 Options:
