@@ -60,7 +60,9 @@ struct event_scratch {
     event_place<Model, R> place;
     step_part<R> part;
     scanned_part<R, n_event<Model>> scanned;
-    vec<R, n_event<Model>> side;  // that the functions are on
+    vec<R, n_event<Model>> side;            // that the functions are on
+    vec<R, n_event<Model>> slope, heading;  // at the end of a redone step,
+    vec<R, n_event<Model>> middle;          // and values in the middle of it
 };
 template <class Model, class R>
 struct event_scratch<Model, R, false> {};

@@ -149,7 +149,9 @@ private:
         auto& redo = own.redo;
         const auto& near = own.near;
         const bool narrow = redo.is_between(step.h);
-        reals slope = step.g1, heading = step.g1, middle = step.g1;
+        auto& found = sides.scratch();
+        reals &slope = found.slope, &heading = found.heading, &middle = found.middle;
+        slope = heading = middle = step.g1;
         if (!reached.is_plain()) {
             slope = step.slopes1();
             heading = resolver::headings(slope, redo.crossed, step.t1, step.y1, step.slope1, step.h, step.p,
