@@ -2,7 +2,7 @@
 // The kernels of a model with stop times, beside those of the same model without.
 //
 //
-// limit: integrate_ensemble<dosing, tsitouras_5> stack 0 spill 0 registers 72
+// limit: integrate_ensemble<dosing, tsitouras_5> stack 0 spill 0 registers 64
 // limit: integrate_ensemble<dosing, runge_kutta_4> stack 0 spill 0 registers 72
 
 #include <myriad/cuda/kernel.cuh>

@@ -29,12 +29,12 @@ struct thrown {
 using flags = myriad::detail::mask_set<bool, thrown::n_event>;
 using values = myriad::vec<double, thrown::n_event>;
 
-struct step : myriad::inputs<thrown, double>, myriad::detail::step_ends<thrown, double> {
+struct step : myriad::detail::step_ends<thrown, double> {
     static constexpr double closest = 1e-9;
     values tolerance;  // of all functions the same
 
-    step(double from, double to, double alarm_at = 10) : step_ends(static_cast<const inputs&>(*this)) {
-        parameter[thrown::alarm] = alarm_at;
+    step(double from, double to, double alarm_at = 10) : step_ends(myriad::inputs<thrown, double>{}) {
+        p.parameter[thrown::alarm] = alarm_at;
         t = from, h = to - from, t1 = to;
         y = {from - from * from / 2}, y1 = {to - to * to / 2};
         slope = {1 - from}, slope1 = {1 - to};

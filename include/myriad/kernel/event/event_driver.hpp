@@ -29,9 +29,9 @@ public:
     using detector = event_detector<Model, Method, S>;
     using tracker = side_tracker<Model, Method, S>;
 
-    /// `memory` holds one entry per lane, outside the loop's own state, which is in registers.
+    /// `memory` is outside the loop's own state, which is in registers.
     MYRIAD_FUNCTION event_driver(const kernel_arguments<Model, R>& args, integration_state<Model, Method, S>& s,
-                                 event_memory<Model, R>* memory)
+                                 event_memories<Model, R, lanes_of<S>>* memory)
         : args_(args), s_(s), memory_(memory), e_{}, fired_{}, triggers_{} {}
 
     /// For lanes that are still empty.
@@ -73,7 +73,7 @@ public:
         return detected.to_locate & !e_.flags[e_.in_question];
     }
     /// How many turns of the loop a thread has waited for events of its warp's other threads. The loop counts them.
-    MYRIAD_FUNCTION std::int32_t& turns_waited() { return memory_->waited; }
+    MYRIAD_FUNCTION std::int32_t& turns_waited() { return memory_->lane[0].waited; }
     /// The lanes in which all event functions are defined at both ends of the trial.
     MYRIAD_FUNCTION mask defined(const detection& detected) const {
         mask lanes = !e_.flags[e_.undefined];
@@ -165,7 +165,7 @@ private:
 
     const kernel_arguments<Model, R>& args_;
     integration_state<Model, Method, S>& s_;
-    event_memory<Model, R>* memory_;
+    event_memories<Model, R, lanes_of<S>>* memory_;
     event_sides<Model, S> e_;
     fired_events<Model, S> fired_;
     trigger_state<Model, S> triggers_;

@@ -43,8 +43,9 @@ MYRIAD_FUNCTION R rounding_weight(int c) {
 /// States too small for normal numbers have the rounding error of the smallest. Zero where the functions have no finite
 /// derivative, or are constant but for jumps.
 template <class Model, class R>
-MYRIAD_RARE_FUNCTION vec<R, n_event<Model>> event_roundings(R t, vec<R, n_state<Model>> y, vec<R, n_state<Model>> size,
-                                                            inputs<Model, R> p) {
+MYRIAD_FUNCTION vec<R, n_event<Model>> compute_roundings(const R& t, const vec<R, n_state<Model>>& y,
+                                                         const vec<R, n_state<Model>>& size,
+                                                         const inputs<Model, R>& p) {
     constexpr R least = smallest_normal_of<R> / epsilon_of<R>;
     vec<dual<R>, n_state<Model>> y_dual;
     static_for<0, n_state<Model>>([&](auto c) MYRIAD_LAMBDA {
@@ -64,44 +65,86 @@ MYRIAD_RARE_FUNCTION vec<R, n_event<Model>> event_roundings(R t, vec<R, n_state<
     }
     return rounding;
 }
+
+/// What the functions below, which are rarely called, work on. It lies in memory: as arguments or in registers, it
+/// would take registers of the whole loop.
+template <class Model, class R>
+struct event_place {
+    using state = vec<R, n_state<Model>>;
+    using reals = vec<R, n_event<Model>>;
+
+    inputs<Model, R> p;
+    R t;
+    state y, size;
+    // a path from there, in the direction of h, with this slope and second derivative, looked at from the time `first`
+    R h, first;
+    state slope, bend;
+    // and a point of it
+    R length;
+    state there;
+    reals here, rounding, sign;
+};
+
+/// `compute_roundings` out of line.
+template <class Model, class R>
+MYRIAD_RARE_FUNCTION void find_roundings(event_place<Model, R>* at) {
+    at->rounding = detail::compute_roundings<Model>(at->t, at->y, at->size, at->p);
+}
+template <class Model, class R>
+MYRIAD_FUNCTION vec<R, n_event<Model>> event_roundings(const R& t, const vec<R, n_state<Model>>& y,
+                                                       const vec<R, n_state<Model>>& size, const inputs<Model, R>& p,
+                                                       event_place<Model, R>* place) {
+    place->p = p;
+    place->t = t;
+    place->y = y;
+    place->size = size;
+    detail::find_roundings(place);
+    return place->rounding;
+}
 /// The same for a state that was given, not integrated.
 template <class Model, class R>
 MYRIAD_FUNCTION vec<R, n_event<Model>> event_roundings(const R& t, const vec<R, n_state<Model>>& y,
-                                                       const inputs<Model, R>& p) {
+                                                       const inputs<Model, R>& p, event_place<Model, R>* place) {
     vec<R, n_state<Model>> size;
     MYRIAD_UNROLL
     for (int c = 0; c < n_state<Model>; ++c) size[c] = abs(y[c]);
-    return detail::event_roundings<Model>(t, y, size, p);
+    return detail::event_roundings<Model>(t, y, size, p, place);
 }
 
-/// The signs that event functions show first after (t, y) on the parabola with this slope and second derivative, in the
-/// direction of h: where they and their changes exceed their rounding errors, from the time `first`, but at least its
-/// resolution, to a 64th of t and h. Zero where none does. For functions whose own slope is zero and says nothing, as
-/// that of x^3 at x = 0.
+/// Finds the signs that event functions show first on a path: where they and their changes exceed their rounding
+/// errors, from the time `first`, but at least its resolution, to a 64th of t and h. Zero where none does. For
+/// functions whose own slope is zero and says nothing, as that of x^3 at x = 0.
 template <class Model, class R>
-MYRIAD_RARE_FUNCTION vec<R, n_event<Model>> first_signs(R t, vec<R, n_state<Model>> y, vec<R, n_state<Model>> slope,
-                                                        vec<R, n_state<Model>> bend, R first, R h, inputs<Model, R> p) {
-    const auto here = detail::evaluate_events<Model>(t, y, p);
-    vec<R, n_event<Model>> sign{};
-    const R size = abs(t) + abs(h);
+MYRIAD_RARE_FUNCTION void find_first_signs(event_place<Model, R>* path) {
+    constexpr int n = n_state<Model>, m = n_event<Model>;
+    path->here = detail::evaluate_events<Model>(path->t, path->y, path->p);
+    MYRIAD_UNROLL
+    for (int j = 0; j < m; ++j) path->sign[j] = R(0);
+    const R least = R(64) * epsilon_of<R> * (abs(path->t) + abs(path->h));
+    path->length = copysign(max(least, path->first), path->h);
     MYRIAD_ROLLED
-    for (R ahead = max(R(64) * epsilon_of<R> * size, first); ahead * R(64) <= size; ahead *= R(16)) {
-        const R length = copysign(ahead, h);
-        vec<R, n_state<Model>> there;
+    while (abs(path->length) * R(64) <= abs(path->t) + abs(path->h)) {
+        MYRIAD_OPTIMISATION_BARRIER(path);  // else what it points to occupies registers throughout
+        const R length = path->length;
         MYRIAD_UNROLL
-        for (int c = 0; c < n_state<Model>; ++c) there[c] = fma(length, fma(R(0.5) * length, bend[c], slope[c]), y[c]);
-        const auto g = detail::evaluate_events<Model>(t + length, there, p);
-        const auto rounding = detail::event_roundings<Model>(t + length, there, p);
+        for (int c = 0; c < n; ++c) {
+            path->there[c] = fma(length, fma(R(0.5) * length, path->bend[c], path->slope[c]), path->y[c]);
+            path->size[c] = abs(path->there[c]);
+        }
+        path->rounding = detail::compute_roundings<Model>(path->t + length, path->there, path->size, path->p);
+        MYRIAD_OPTIMISATION_BARRIER(path);
+        const auto g = detail::evaluate_events<Model>(path->t + path->length, path->there, path->p);
         bool all = true;
         MYRIAD_UNROLL
-        for (int j = 0; j < n_event<Model>; ++j) {
-            const bool shows = abs(g[j]) > rounding[j] && abs(g[j] - here[j]) > rounding[j];
-            if (sign[j] == R(0) && shows) sign[j] = g[j] > R(0) ? R(1) : R(-1);
-            all = all && sign[j] != R(0);
+        for (int j = 0; j < m; ++j) {
+            const R rounding = path->rounding[j];
+            const bool shows = abs(g[j]) > rounding && abs(g[j] - path->here[j]) > rounding;
+            if (path->sign[j] == R(0) && shows) path->sign[j] = g[j] > R(0) ? R(1) : R(-1);
+            all = all && path->sign[j] != R(0);
         }
         if (all) break;
+        path->length *= R(16);
     }
-    return sign;
 }
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET

@@ -23,13 +23,6 @@ struct trial_ends {
     vec<S, n_event<Model>> g;
 };
 
-/// The part of a step, in fractions of it, that contains the crossings.
-template <class R>
-struct step_part {
-    R low = R(0), high = R(1);
-    bool scanned = false;  // found at points inside the step, and the slope at its end is known
-};
-
 /// What both ways to locate events share.
 template <class Model, class Method, class S>
 struct event_location {
@@ -86,12 +79,12 @@ struct event_location {
         if (redo.length != R(0)) return redo_step(i);
         add_to_count(s.located, i);
         stop_locating(i);
-        const reals rounding = near.roundings_at_start(step);
+        const reals rounding = near.roundings_at_start(step, &sides.scratch().place);
         reals heading{};
         if constexpr (!Nearness::is_plain) {
             if (!again)
                 heading = side_resolver<Model, Method, S>::headings(step.slopes(), redo.crossed, step.t, step.y,
-                                                                    step.slope, step.h, step.p);
+                                                                    step.slope, step.h, step.p, &sides.scratch().place);
         }
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {

@@ -34,4 +34,44 @@ struct event_memory {
     }
 };
 
+/// The part of a step, in fractions of it, that contains the crossings.
+template <class R>
+struct step_part {
+    R low = R(0), high = R(1);
+    R turn = R(0);         // where the step is to end instead, if not zero
+    bool scanned = false;  // found at points inside the step, and the slope at its end is known
+};
+
+/// What `step_scan` works on.
+template <class R, int events>
+struct scanned_part {
+    vec<dual<R>, events> before, after, inside;  // the event functions, with their slopes per step, at points of it
+    R theta;                                     // the end of the part that is looked at
+    R place;                                     // the point up to which is looked next
+    R low, high;                                 // between which a function turns
+    std::int32_t points, turns, function;        // how many and which were looked at
+};
+
+/// What the rare ways to locate an event work on, for one lane at a time: in memory, as in registers it would take
+/// those of the whole loop.
+template <class Model, class R, bool events = (n_event<Model> > 0)>
+struct event_scratch {
+    step_ends<Model, R> step;
+    event_place<Model, R> place;
+    step_part<R> part;
+    scanned_part<R, n_event<Model>> scanned;
+    vec<R, n_event<Model>> side;            // that the functions are on
+    vec<R, n_event<Model>> slope, heading;  // at the end of a redone step,
+    vec<R, n_event<Model>> middle;          // and values in the middle of it
+};
+template <class Model, class R>
+struct event_scratch<Model, R, false> {};
+
+/// All of a pack of so many lanes. It is one object, as each would take registers for its address.
+template <class Model, class R, int lanes>
+struct event_memories {
+    event_memory<Model, R> lane[lanes] = {};
+    event_scratch<Model, R> scratch;
+};
+
 }  // namespace myriad::detail::inline MYRIAD_TARGET

@@ -19,7 +19,10 @@ struct plain_nearness {
     const kernel_arguments<Model, R>& args;
 
     MYRIAD_FUNCTION R band(int j) const { return args.event[j].tolerance; }
-    MYRIAD_FUNCTION vec<R, n_event<Model>> roundings_at_start(const step_ends<Model, R>&) const { return {}; }
+    MYRIAD_FUNCTION vec<R, n_event<Model>> roundings_at_start(const step_ends<Model, R>&,
+                                                              event_place<Model, R>*) const {
+        return {};
+    }
 };
 
 /// For any functions. It lies in memory, as few steps need it.
@@ -34,8 +37,9 @@ struct event_nearness {
     MYRIAD_FUNCTION R allowance(int j) const { return allowances[j]; }  ///< past zero by no more is no crossing
     MYRIAD_FUNCTION R past(int j) const { return max(allowances[j], roundings[j]); }  ///< the same at the trial's end
     template <class Model>
-    MYRIAD_FUNCTION vec<R, events> roundings_at_start(const step_ends<Model, R>& step) const {
-        return detail::event_roundings<Model>(step.t, step.y, step.p);
+    MYRIAD_FUNCTION vec<R, events> roundings_at_start(const step_ends<Model, R>& step,
+                                                      event_place<Model, R>* place) const {
+        return detail::event_roundings<Model>(step.t, step.y, step.p, place);
     }
 };
 

@@ -5,6 +5,7 @@
 
 #include "myriad/kernel/event/event_location.hpp"
 #include "myriad/kernel/event/side_resolver.hpp"
+#include "myriad/kernel/event/step_scan.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
@@ -27,10 +28,10 @@ struct general_locator {
         auto& own = sides.memory_of(i);
         auto& near = own.near;
         step.g = detail::evaluate_events<Model>(step.t, step.y, step.p);
-        near.roundings = step.roundings();
+        near.roundings = step.roundings(&sides.scratch().place);
         resolver{sides}.resolve_open_sides(i, step, near.roundings);
         const bool locating = sides.is_locating(i), seeking = locating && own.redo.target != own.redo.none;
-        reals side;
+        reals& side = sides.scratch().side;
         flags crossed;
         crossed.clear();
         MYRIAD_UNROLL
@@ -45,14 +46,14 @@ struct general_locator {
             near.allowances[j] = located ? tolerance : start;
             crossed.set(j, sides.crosses(j, side[j], step.g1[j], near.past(j)) && !sides.is_at_jump(j, i, step.h));
         }
-        step_part<R> part;
+        auto& part = sides.scratch().part;
+        part = step_part<R>{};
         if (MYRIAD_UNLIKELY(sides.args.sub_samples > 1)) {
             location{sides}.evaluate_end_slope(i, step, ends);
             part.scanned = true;
-            R turn = R(0);
-            crossed = scan(i, step, side, part, turn);
-            if (turn != R(0)) {
-                own.redo.begin_turn(turn * step.h, locating ? own.redo.resume : get_lane(sides.s.data.h_next, i));
+            crossed = step_scan<Model, Method, S>{sides}.run(i, step, side, part);
+            if (part.turn != R(0)) {
+                own.redo.begin_turn(part.turn * step.h, locating ? own.redo.resume : get_lane(sides.s.data.h_next, i));
                 location{sides}.redo_step(i);
                 return trial_outcome::is_redone;
             }
@@ -109,101 +110,6 @@ private:
         for (int j = 0; j < m; ++j)
             if (sides.memory_of(i).on_jump[j]) step.g[j] = copysign(R(infinity_of<R>), side[j]);
     }
-    /// Checks `sub_samples` points of the step, and those between them where an event function turns back to its side,
-    /// for the first crossing, updates the sides up to it, and sets `part` to the part of the step that contains it.
-    /// Sets `turn` to the first place inside the step, if it has one, where a function turns: the step is to end there
-    /// instead, as the cubic is less accurate than the step.
-    MYRIAD_FUNCTION flags scan(int i, const ends_of_step& step, reals& side, step_part<R>& part, R& turn) const {
-        const auto& args = sides.args;
-        const auto& g1 = step.g1;
-        flags crossed;
-        crossed.clear();
-        moving before = step.moving_values_at(R(0));
-        MYRIAD_ROLLED
-        for (int k = 1; k <= args.sub_samples; ++k) {
-            const bool last = k == args.sub_samples;
-            const R theta = last ? R(1) : static_cast<R>(k) / static_cast<R>(args.sub_samples);
-            const moving after = step.moving_values_at(theta);
-            MYRIAD_ROLLED
-            for (int turns = 0; turns < m; ++turns) {
-                const R place = first_turn(step, side, part.low, theta, before, after);
-                if (!(place > part.low && place < theta)) break;
-                const bool shortens = is_adaptive<Method> && place > R(least_turn) && place < R(1) - R(least_turn);
-                if (shortens && !(sides.is_locating(i) && sides.memory_of(i).redo.target != redone::none)) {
-                    turn = place;
-                    return crossed;
-                }
-                before = step.moving_values_at(place);
-                crossed = look(i, step, side, place, values_of(before));
-                if (crossed.any_of()) {
-                    part.high = place;
-                    return crossed;
-                }
-                part.low = place;
-            }
-            crossed = look(i, step, side, theta, last ? g1 : values_of(after));
-            if (crossed.any_of()) {
-                part.high = theta;
-                return crossed;
-            }
-            if (!last) part.low = theta;
-            before = after;
-        }
-        return crossed;
-    }
-    /// A turn closer to an end of the step is looked at on the cubic, which is accurate there.
-    static constexpr double least_turn = 1.0 / 4096;
-    using moving = vec<dual<R>, m>;  // the event functions, with their slopes per step
-    using redone = redone_step<R, m>;
-
-    static MYRIAD_FUNCTION reals values_of(const moving& g) {
-        reals values;
-        MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) values[j] = g[j].value;
-        return values;
-    }
-    /// The first place between two points of the step at which a function that moves towards zero at the first and away
-    /// from it at the second turns, by bisection, since such a function may be flat; the second if there is none.
-    MYRIAD_FUNCTION R first_turn(const ends_of_step& step, const reals& side, R from, R to, const moving& before,
-                                 const moving& after) const {
-        R first = to;
-        MYRIAD_ROLLED
-        for (int j = 0; j < m; ++j) {
-            const R falls = -side[j] * before[j].derivative, rises = side[j] * after[j].derivative;
-            const R least = epsilon_of<R> * max(abs(before[j].value), abs(after[j].value));  // less changes no value
-            if (!(falls > least && rises > least && side[j] * before[j].value > R(0))) continue;
-            R low = from, high = to;
-            MYRIAD_ROLLED
-            while (high - low > R(4) * epsilon_of<R> * high) {
-                const R middle = R(0.5) * (low + high);
-                (side[j] * step.moving_values_at(middle)[j].derivative < R(0) ? low : high) = middle;
-            }
-            first = min(first, high);
-        }
-        return first;
-    }
-    /// Compares the values g of the event functions at a point of the step with their sides. Returns the functions that
-    /// have crossed; if there are none, the sides become those at this point.
-    MYRIAD_FUNCTION flags look(int i, const ends_of_step& step, reals& side, R theta, const reals& g) const {
-        const auto& own = sides.memory_of(i);
-        const R length = theta * step.h;
-        const reals rounding = theta < R(1) ? step.roundings_at(theta) : own.near.roundings;
-        flags crossed;
-        crossed.clear();
-        MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j)
-            crossed.set(j, sides.crosses(j, side[j], g[j], max(own.near.allowance(j), rounding[j])) &&
-                               !sides.is_at_jump(j, i, length));
-        if (crossed.any_of()) return crossed;
-        MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
-            if (!(abs(g[j]) > max(own.near.allowance(j), rounding[j])) || sides.is_at_jump(j, i, length)) continue;
-            side[j] = sign_of(g[j]);
-            if (!sides.is_timeless(i, length) && !own.on_jump[j]) sides.e.left.set(j, i, true);
-        }
-        return crossed;
-    }
-
     /// How near to its event a redone step that did not cross has ended.
     struct arrival {
         R gap, band, close;  // of the event's function: its value, within which it fires, and needs no better guess
@@ -243,10 +149,13 @@ private:
         auto& redo = own.redo;
         const auto& near = own.near;
         const bool narrow = redo.is_between(step.h);
-        reals slope = step.g1, heading = step.g1, middle = step.g1;
+        auto& found = sides.scratch();
+        reals &slope = found.slope, &heading = found.heading, &middle = found.middle;
+        slope = heading = middle = step.g1;
         if (!reached.is_plain()) {
             slope = step.slopes1();
-            heading = resolver::headings(slope, redo.crossed, step.t1, step.y1, step.slope1, step.h, step.p);
+            heading = resolver::headings(slope, redo.crossed, step.t1, step.y1, step.slope1, step.h, step.p,
+                                         &sides.scratch().place);
             if (!reached.all_left) middle = step.values_at(R(0.5));
         }
         R approach = R(0);
@@ -311,21 +220,24 @@ private:
     MYRIAD_FUNCTION void end_on_root(int i, const ends_of_step& step, const reals& side, fired& events) const {
         auto& own = sides.memory_of(i);
         const R rounding = end_rounding(i, step), reach = copysign(rounding, step.h);
-        typename ends_of_step::state bend, there;
+        auto& path = sides.scratch().place;
+        path.p = step.p;
+        path.t = step.t1, path.h = step.h, path.first = R(2) * rounding;
+        path.y = step.y1, path.slope = step.slope1;
+        typename ends_of_step::state there;
         MYRIAD_UNROLL
         for (int c = 0; c < n_state<Model>; ++c) {
-            bend[c] = (step.slope1[c] - step.slope[c]) / step.h;
+            path.bend[c] = (step.slope1[c] - step.slope[c]) / step.h;
             there[c] = fma(reach, step.slope1[c], step.y1[c]);
         }
         const reals beyond = detail::evaluate_events<Model>(step.t1 + reach, there, step.p);
-        const reals sign =
-            detail::first_signs<Model>(step.t1, step.y1, step.slope1, bend, R(2) * rounding, step.h, step.p);
+        detail::find_first_signs(&path);
         own.at_jump.clear();
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
             const bool reaches = side[j] * step.g1[j] <= R(0) || side[j] * beyond[j] <= R(0);
             const bool close = abs(step.g1[j]) <= sides.args.event[j].end_tolerance;
-            const bool happens = reaches && close && sides.is_asked(j, side[j]) && side[j] * sign[j] < R(0);
+            const bool happens = reaches && close && sides.is_asked(j, side[j]) && side[j] * path.sign[j] < R(0);
             events.put(j, i, happens, step.g1[j]);
             own.at_jump.set(j, happens && abs(step.g1[j]) > own.near.band(j));
         }

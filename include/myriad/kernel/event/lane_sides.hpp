@@ -32,12 +32,18 @@ struct lane_sides {
     const kernel_arguments<Model, R>& args;
     integration_state<Model, Method, S>& s;
     event_sides<Model, S>& e;
-    event_memory<Model, R>* memory;  // of each lane
+    event_memories<Model, R, lanes_of<S>>* memory;
 
     MYRIAD_FUNCTION event_memory<Model, R>& memory_of(int i) const {
-        auto* own = memory + i;
+        auto* own = memory->lane + i;
         MYRIAD_OPTIMISATION_BARRIER(own);  // else nvcc keeps the values it points to in registers
         return *own;
+    }
+    /// Its values are not kept between steps.
+    MYRIAD_FUNCTION event_scratch<Model, R>& scratch() const {
+        auto* shared = &memory->scratch;
+        MYRIAD_OPTIMISATION_BARRIER(shared);
+        return *shared;
     }
     /// What the last phase has kept of event j for the next.
     MYRIAD_FUNCTION std::int32_t& kept_at(int j, int i) const {
@@ -96,7 +102,8 @@ struct lane_sides {
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) clear = clear && (!in_question[j] || is_beyond_tolerance(j, g[j]));
         if (clear) return reals{};
-        return detail::event_roundings<Model>(get_lane(s.now(), i), get_lanes<R>(s.data.y, i), inputs_of(i));
+        return detail::event_roundings<Model>(get_lane(s.now(), i), get_lanes<R>(s.data.y, i), inputs_of(i),
+                                              &scratch().place);
     }
 
     /// Whether event j fired at the committed state. After an ordinary step every function has left.

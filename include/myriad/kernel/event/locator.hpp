@@ -47,7 +47,9 @@ struct event_locator {
             step.g1 = detail::evaluate_events<Model>(step.t1, step.y1, p);
         }
         if (leaves_plainly(i, step)) return trial_outcome::stands;
-        return general_locator<Model, Method, S>{sides}.locate(i, step, ends, events);
+        auto& kept = sides.scratch().step;  // in registers, it would take those of the whole loop
+        kept = step;
+        return general_locator<Model, Method, S>{sides}.locate(i, kept, ends, events);
     }
 
     /// A redone step that failed its error test is not redone.

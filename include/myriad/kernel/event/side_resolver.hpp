@@ -94,7 +94,7 @@ struct side_resolver {
         const flags open = own.open, held = own.held, fired_last = own.fired_last;
         if (!open.any_of()) return;
         const reals slope = step.slopes();
-        const reals heading = headings(slope, open, step.t, step.y, step.slope, step.h, step.p);
+        const reals heading = headings(slope, open, step.t, step.y, step.slope, step.h, step.p, &sides.scratch().place);
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
             if (!open[j]) continue;
@@ -143,7 +143,8 @@ struct side_resolver {
             const state y = get_lanes<R>(s.data.y, i);
             g = detail::evaluate_events<Model>(t, y, p);
             slope = detail::event_slopes<Model>(t, y, along, p);
-            heading = headings(slope, events.which.of_lane(i), t, y, along, get_lane(s.h, i), p);
+            heading =
+                headings(slope, events.which.of_lane(i), t, y, along, get_lane(s.h, i), p, &sides.scratch().place);
         }
         flags at_jump, in_question;
         at_jump.clear();
@@ -191,7 +192,8 @@ struct side_resolver {
     /// The sides to which the event functions go from (t, y), in the direction of h: +1, -1, or 0 for those that rest.
     /// Their slopes tell; of functions in `wanted` without one, the values ahead.
     static MYRIAD_FUNCTION reals headings(const reals& slope, const flags& wanted, const R& t, const state& y,
-                                          const state& along, const R& h, const inputs<Model, R>& p) {
+                                          const state& along, const R& h, const inputs<Model, R>& p,
+                                          event_place<Model, R>* path) {
         reals heading;
         bool flat = false;
         MYRIAD_UNROLL
@@ -200,10 +202,13 @@ struct side_resolver {
             flat = flat || (wanted[j] && slope[j] == R(0));
         }
         if (!MYRIAD_UNLIKELY(flat)) return heading;
-        const reals sign = detail::first_signs<Model>(t, y, along, state{}, R(0), h, p);
+        path->p = p;
+        path->t = t, path->h = h, path->first = R(0);
+        path->y = y, path->slope = along, path->bend = state{};
+        detail::find_first_signs(path);
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j)
-            if (slope[j] == R(0)) heading[j] = sign[j];
+            if (slope[j] == R(0)) heading[j] = path->sign[j];
         return heading;
     }
 
@@ -228,7 +233,7 @@ private:
             smooth.set(j, events.which.get(j, i) && !jumps[j]);
         }
         slope = detail::event_slopes<Model>(t, y, along, p);
-        reals heading = headings(slope, smooth, t, y, along, get_lane(s.h, i), p);
+        reals heading = headings(slope, smooth, t, y, along, get_lane(s.h, i), p, &sides.scratch().place);
         if (!jumps.any_of()) return heading;
         const reals g = values_ahead(i, at, along);
         MYRIAD_UNROLL

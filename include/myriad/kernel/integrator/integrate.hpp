@@ -38,7 +38,7 @@ struct integrator {
     const kernel_arguments<Model, R>& args;
     integration_state<Model, Method, S> s;
     sample_state<Method, S> o;
-    event_memory<Model, R>* memory;  // of the lanes
+    event_memories<Model, R, lanes_of<S>>* memory;
 
     template <class Source>
     MYRIAD_FUNCTION void run(Source& source, const shared_parameters<R>& shared) {
@@ -202,8 +202,8 @@ template <class Model, class Method, class S, class Source>
 MYRIAD_FUNCTION std::int64_t integrate(const kernel_arguments<Model, real_of<S>>& args,
                                        const shared_parameters<real_of<S>>& shared, Source& source) {
     static_assert(hooks_fit<Model, real_of<S>>);
-    event_memory<Model, real_of<S>> memory[lanes_of<S>] = {};  // outside the loop's own state, which is in registers
-    integrator<Model, Method, S> loop{args, {}, {}, memory};
+    event_memories<Model, real_of<S>, lanes_of<S>> memory;  // outside the loop's own state, which is in registers
+    integrator<Model, Method, S> loop{args, {}, {}, &memory};
     loop.run(source, shared);
     return loop.s.all_iterations_of(args);
 }
