@@ -28,7 +28,8 @@ from .statuses import status_names
 
 if TYPE_CHECKING:
     from .expression import Node
-    from .hints import AnyModel, Array
+    from .any_model import AnyModel
+    from .hints import Array
     from .run import Run
 
 # Most bytes of records of a group of instances that are integrated at a time; a single instance may have more. On a
@@ -301,7 +302,7 @@ def _counting(model: Model, actions: Sequence[Event | Stop]) -> tuple[Model, lis
     where actions were."""
     if not actions:
         return model, []
-    taken = [*model.component_names, *getattr(model, "outputs", {}), *getattr(model, "aliases", {})]
+    taken = [*model.component_names, *model.outputs, *model.aliases]
     counters: dict[int, Any] = {}
     for one in actions:
         taken.append(sym.free_name(f"acted_{len(counters) + 1}", taken))

@@ -11,13 +11,15 @@ import numpy as np
 
 from . import kinds
 from . import symbols as sym
+from .any_model import counts_of, names_of
 from .errors import Error
 from .expression import Node, evaluate, is_sympy, symbols_of, text
 from .parse import sympy_name
 from .units import one_by_one, spread
 
 if TYPE_CHECKING:
-    from .hints import AnyModel, Array, ByComponent, Component, SomeComponents
+    from .any_model import AnyModel
+    from .hints import Array, ByComponent, Component, SomeComponents
 
 
 def name_of(key: Component) -> str:
@@ -53,19 +55,16 @@ class Components:
     """Where a model's components are: the kind and number of each name."""
 
     def __init__(self, model: AnyModel) -> None:
-        self.names, self.counts = kinds.names_of(model), kinds.counts_of(model)
+        self.names, self.counts = names_of(model), counts_of(model)
         self.states, self.event_names = self.names["state"], self.names["event"]
-        self.tables = getattr(model, "shared_values", {})  # shared values that the model itself has
-        self.defaults = getattr(model, "defaults", self.tables)  # of components that need not be given
-        self.aliases = getattr(model, "aliases", {})  # components by other names
-        self.outputs = getattr(model, "outputs", {})  # what a run computes from its results, as expressions
-        self.units = getattr(model, "units", {})  # texts by component or output
-        self.time_unit = getattr(model, "time_unit", "")
-        self.constants = getattr(model, "constants", {})  # values of symbols in outputs that are no components
-        self.generated = list(getattr(model, "generated", ()))  # components that the model sets in a study
-        self.hidden: frozenset[str] = getattr(model, "hidden", frozenset())  # accessories that no user has named
+        self.tables = model.shared_values  # shared values that the model itself has
+        self.defaults = {**self.tables, **model.defaults}  # of components that need not be given
+        self.aliases, self.outputs, self.constants = model.aliases, model.outputs, model.constants
+        self.units, self.time_unit = model.units, model.time_unit
+        self.generated = list(model.generated)  # components that the model sets in a study
+        self.hidden = model.hidden  # accessories that no user has named
         self.events = list(model.events)
-        self.derivatives_by = list(getattr(model, "by", ()))  # components that a model has derivatives by
+        self.derivatives_by = list(model.by)  # components that a model has derivatives by
         self.place = {name: (kind, number) for kind in kinds.valued for number, name in enumerate(self.names[kind])}
 
     def component(self, key: Component) -> str:

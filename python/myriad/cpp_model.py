@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from .errors import Error
-from .kinds import ComponentNames
+from .any_model import AnyModel
 
 if TYPE_CHECKING:
     from .hints import Names
@@ -26,11 +26,15 @@ def _names(several: Any) -> tuple[str, ...]:
     return tuple(several.replace(",", " ").split() if isinstance(several, str) else several)
 
 
-class CppModel(ComponentNames):
+class CppModel(AnyModel):
     """A model as a C++ struct, as in the C++ library's documentation: `text` defines the struct `struct`. The other
     arguments name its components in the order of its enumerations, as one string or a list; events may be a dict from
     names to their `direction`, `tolerance` and `stop_after`. `generates` names what the struct's `generate` sets, if a
     study is to call it."""
+
+    not_interpreted = "it is written in C++"
+    generated: tuple[str, ...] = ()
+    generator = ""
 
     def __init__(self, text: str, struct: str, states: Names, parameters: Names = (), shared: Names = (),
                  shared_integers: Names = (), accessories: Names = (), integer_accessories: Names = (),

@@ -24,7 +24,8 @@ from .student import student_quantile
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from .hints import AnyModel, Array, ByComponent, SomeComponents
+    from .any_model import AnyModel
+    from .hints import Array, ByComponent, SomeComponents
 
 __all__ = ["Fit", "fit"]
 

@@ -23,7 +23,8 @@ from .symbols import time as time_symbol
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from .hints import AnyModel, Array, ByComponent, Component, SomeComponents, Values
+    from .any_model import AnyModel
+    from .hints import Array, ByComponent, Component, SomeComponents, Values
     from .run import Run
 
 __all__ = ["Batched", "batched"]

@@ -5,18 +5,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Literal, Union
+from typing import Any, Literal, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from .expression import Expression, Node
-
-if TYPE_CHECKING:
-    from .cpp_model import CppModel
-    from .model import Model
-    from .sensitivities import WithSensitivities
-    from .tangents import WithTangents
 
 # A component: a symbol, as from `myriad.states`, or its name. Those of SymPy will do, and a mapping with keys of one
 # kind is none with keys of several, so that it may be anything for a type checker.
@@ -39,8 +33,6 @@ Progress = Union[bool, Callable[[int, int], object], None]
 Names = Union[str, Expression, Iterable[Any]]
 # What a hook or an event of a model sets: targets, and the values that they get.
 Assignments = list[tuple[Node, Node]]
-# A model of any kind.
-AnyModel = Union["Model", "CppModel", "WithTangents", "WithSensitivities"]
 Path = Union[str, "os.PathLike[str]"]
 Array = npt.NDArray[Any]
 Direction = Literal["falling", "either", "rising", "none"]

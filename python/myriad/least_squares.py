@@ -20,7 +20,8 @@ from .statuses import status_names
 from .symbols import time
 
 if TYPE_CHECKING:
-    from .hints import AnyModel, Array, ByComponent, Values
+    from .any_model import AnyModel
+    from .hints import Array, ByComponent, Values
     from .run import Run
 
 __all__ = ["LeastSquares", "least_squares"]

@@ -3,12 +3,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .errors import Error, at
 from .expression import Node, text
+
+if TYPE_CHECKING:
+    from .any_model import AnyModel
 
 method = "rodas_5p"  # the one that takes a mass matrix
 
@@ -86,7 +89,7 @@ def mass_entries(model: Any) -> str:
                      for i, j in np.argwhere(model.mass_matrix))
 
 
-def check_method(model: Any, chosen: str) -> None:
+def check_method(model: AnyModel, chosen: str) -> None:
     """Refuses a method that does not take the model's mass matrix."""
-    if getattr(model, "mass_matrix", None) is not None and chosen != method:
+    if model.mass_matrix is not None and chosen != method:
         raise Error(f"the model has a mass matrix, which {chosen} does not take: give method=\"{method}\"")

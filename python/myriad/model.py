@@ -13,6 +13,7 @@ import numpy as np
 
 from . import kinds
 from . import symbols as sym
+from .any_model import AnyModel, names_of
 from .axes import Axis
 from .cpp import Writer, generic_problem
 from .errors import Error, at, users_line
@@ -188,7 +189,7 @@ def model(equations: ByComponent | Callable[..., Any] | str, *, events: Event | 
                  name, stops, mass_matrix, triggers, tie_seed)
 
 
-class Model(kinds.ComponentNames):
+class Model(AnyModel):
     """A recorded model. Names of components are in the order in which results and C++ enumerate them, elements of
     tables behind the other shared values; `shared_values` has what they are. `cpp()` is its header, `hash` identifies
     it."""
@@ -220,10 +221,10 @@ class Model(kinds.ComponentNames):
         if self.queue is not None:
             self.hidden = frozenset(self.queue.accessories + self.queue.integers)
         start = self._accessories(accessories)
-        self.initialise = start + self._assignments(initialise, "initialise", {t for t, _ in start})
+        self.initialise: Assignments = start + self._assignments(initialise, "initialise", {t for t, _ in start})
         self.after_step = self._assignments(after_step, "after_step")
         self.finalise = self._assignments(finalise, "finalise")
-        self.generate = self._generate(generate)
+        self.generate: Assignments = self._generate(generate)
         self._collect(targets)
         self.equations = dict(zip(targets, self.rhs))  #: the derivatives as they were given
         self._make_jumps_exact(name, mass_matrix is not None)
@@ -656,7 +657,7 @@ class Model(kinds.ComponentNames):
     def enumerations(self) -> list[tuple[str, list[str]]]:
         """(kind, names) of everything that has an enumeration in C++."""
         shared = self.scalar_shared + [name for t in self.tables for name in (t.name, f"{t.name}_last")]
-        return [*{**kinds.names_of(self), "shared": shared}.items(), ("observed", [n for n, _ in self.observed]),
+        return [*{**names_of(self), "shared": shared}.items(), ("observed", [n for n, _ in self.observed]),
                 ("stop", self.stop_names),
                 ("trigger", [e.name for e in self.edges])]
 
@@ -713,11 +714,6 @@ class Model(kinds.ComponentNames):
                         "it another one, name='...'")
 
     # What it is used for
-
-    @property
-    def generated(self) -> list[str]:
-        """The names of the components that `generate` sets."""
-        return [target.value[1] for target, _ in self.generate]
 
     @property
     def generator(self) -> str:

@@ -12,7 +12,8 @@ import copy
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from . import _core, expression as ex, kinds, symbols as sym
+from . import _core, expression as ex, symbols as sym
+from .any_model import counts_of
 from .cpp import work
 from .expression import draws, real, walk
 from .folding import constant, is_constant, value_of
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 
 def prepared(model: Any) -> Any:
     """The model that is compiled or interpreted for one from a file; others, as users write them, stay as they are."""
-    if not getattr(model, "is_from_a_file", False):
+    if not model.is_from_a_file:
         return model
     if not hasattr(model, "_prepared"):
         model._prepared = _prepared(model)
@@ -42,7 +43,7 @@ class _Parts:
         order = walk([*divided, *functions])
         used = {a for node in order if not self._is_stored(node) for a in node.args} | {*divided, *functions}
         saved = {node: work([node]) for node in order if node in used and self._is_stored(node)}
-        taken = [*model.component_names, *getattr(model, "outputs", {}), *getattr(model, "aliases", {})]
+        taken = [*model.component_names, *model.outputs, *model.aliases]
         self._accessories: dict[Node, Node] = {}
         for node in sorted(saved, key=lambda one: -saved[one])[:most]:
             taken.append(sym.free_name(f"per_phase_{len(self._accessories) + 1}", taken))
@@ -110,7 +111,7 @@ def substituted(expression: Expression, values: Mapping[Any, float]) -> Expressi
 
 def _room(model: Model) -> int:
     """How many accessories a model may have more, and still be interpreted as fast as without them."""
-    counts = kinds.counts_of(model)
+    counts = counts_of(model)
     for limits in _core.tape_sizes.values():
         if all(counts[kind] <= most for kind, most in limits.items()):
             return limits["accessory"] - counts["accessory"]

@@ -23,7 +23,8 @@ from .solve import solve
 from .symbols import time
 
 if TYPE_CHECKING:
-    from .hints import AnyModel, Array, Values
+    from .any_model import AnyModel
+    from .hints import Array, Values
     from .run import Run
 
 __all__ = ["PetabLikelihood"]

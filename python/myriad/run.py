@@ -94,8 +94,8 @@ class Run(Mapping):
         self.sweep = sweep if isinstance(sweep, Sweep) else None
         self.report = Report(report, kernel, seconds, notes)
         self.from_phase = from_phase  #: number of the first recorded phase
-        self.units: dict[str, str] = components.units  #: of components and outputs, where the model knows them
-        self.time_unit: str = components.time_unit  #: empty where it is not known
+        self.units = components.units  #: of components and outputs, where the model knows them
+        self.time_unit = components.time_unit  #: empty where it is not known
 
     @property
     def size(self) -> int:
@@ -357,7 +357,7 @@ class Run(Mapping):
         def unstacked(array: Array, *more: str, of: str | None = None
                       ) -> tuple[tuple[str, ...], Array, dict[str, str]]:
             return (*dims, *more), array.reshape(*lengths, *array.shape[1:]), (
-                {"units": units[of]} if of in units else {})
+                {"units": units[of]} if of is not None and of in units else {})
 
         variables: dict[str, Any] = {}
         coordinates: dict[str, Any] = {}

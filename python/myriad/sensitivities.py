@@ -23,7 +23,8 @@ from .symbols import symbol as symbol_of
 from .symbols import t_begin, t_end, time
 
 if TYPE_CHECKING:
-    from .hints import AnyModel, Array, Component, SomeComponents
+    from .any_model import AnyModel
+    from .hints import Array, Component, SomeComponents
     from .options import Options
     from .run import Run
 
@@ -61,13 +62,15 @@ class WithSensitivities(Extended):
     """A model with sensitivities. The derivative of state or accessory c by component k is the state or accessory
     `<c>_by_<k>`, that of the time at which the last phase ended the accessory `time_by_<k>`."""
 
+    not_interpreted = "it has sensitivities"
+
     def __init__(self, model: AnyModel, by: SomeComponents, control: bool = True) -> None:
         line = at(users_line())
         own = Components(model)
         if isinstance(model, Extended):
             raise Error(f"the model has {'sensitivities' if isinstance(model, WithSensitivities) else 'tangents'} "
                         f"already{line}: give the model alone")
-        if getattr(model, "mass_matrix", None) is not None:
+        if model.mass_matrix is not None:
             raise Error(f"the model has a mass matrix{line}, with which initial values of algebraic states would not "
                         "be independent: solve its algebraic equations in the others")
         kinds_of = ("state", "parameter", "shared")
@@ -87,7 +90,7 @@ class WithSensitivities(Extended):
             what = f"'{twice}' is there twice" if twice else "no component is named"
             raise Error(f"sensitivities={wanted!r}{line}: {what}; name each component once, as in sensitivities=[k, x]")
         for what in ("writes_parameters", "writes_time_domain"):
-            if getattr(model, what, False):
+            if getattr(model, what):
                 raise Error(f"the hooks of the model assign {what[7:].replace('_', ' ')}{line}, and what they assign "
                             "has no sensitivities: use an accessory, or end phases by an event")
         if isinstance(model, Model):

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core, compiler, kinds, nvrtc, tape, time_switches
+from .any_model import AnyModel
 from .components import Components, by_component, unknown
 from .core_options import finish_options, make_options, options_of, takes_options
 from .device import DeviceInput
@@ -20,7 +21,6 @@ from .grid import Sweep
 from .inputs import Along, by_name, numbers, whole, whole_numbers
 from .mass_matrix import check_method
 from .methods import default, fixed_step, method_type
-from .model import Model
 from .options import Options, SolveArguments
 from .per_phase import prepared
 from .progress import ProgressDisplay
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from .compiler import Kernel
-    from .hints import AnyModel, ByComponent, Precision, Progress, SomeComponents, Values
+    from .hints import ByComponent, Precision, Progress, SomeComponents, Values
     from .methods import Control, Method
 
 
@@ -186,8 +186,7 @@ def kernel_for(device: str, model: AnyModel, components: Components, method: str
     if interpreted:
         raise Error("a model is interpreted on the CPU alone: leave out interpreted=, or give device=\"cpu\"")
     names = components.names
-    source = model.device_source(method, precision) if isinstance(model, Model) else model.source()
-    return nvrtc.kernel(*source, method_type(method, control, sampled), precision,
+    return nvrtc.kernel(*model.device_source(method, precision), method_type(method, control, sampled), precision,
                         tuple(len(names[kind]) for kind in kinds.shared), int(device.partition(":")[2]),
                         bool(components.generated),
                         lambda library: tape.give_model(library, model, components, method)), names
@@ -269,7 +268,7 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
     if len(devices) > 1 and not all(d.startswith("cuda") for d in devices):
         raise Error(f"device is {device!r}, and several devices of a call must be GPUs: name GPUs alone, or use "
                     "myriad.study, which uses CPU and GPUs together")
-    if isinstance(model, type) or not hasattr(model, "source"):
+    if not isinstance(model, AnyModel):
         raise Error(f"the model is a {type(model).__name__}: make it by myriad.model(...), as in "
                     "myriad.solve(myriad.model({x: v, v: -x}), ...)")
     chosen = default if method is None else method
@@ -312,7 +311,7 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
                 raise Error(f"'tolerance_scale' has {len(scale)} values for {count} instances: give one for each")
             ensemble.array("tolerance_scale")[...] = scale
         # kernels see to it after `initialise`, without which equations are not what they will be
-        after_hook = getattr(model, "mass_matrix", None) is not None and bool(getattr(model, "initialise", ()))
+        after_hook = model.mass_matrix is not None and bool(model.initialise)
         if make_consistent and not after_hook:
             if any(isinstance(array, DeviceInput) for array in given.values()):
                 raise Error("make_consistent=True changes arrays on the host, and some are on a GPU: copy them to the "

@@ -20,7 +20,8 @@ from .model import Model
 from .per_phase import rebuilt
 
 if TYPE_CHECKING:
-    from .hints import AnyModel, Array
+    from .any_model import AnyModel
+    from .hints import Array
 
 _comparisons = "less", "less_equal", "greater", "greater_equal"
 _whole = "floor", "rint", "floor_divide"

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from . import _core, nvrtc, time_switches
+from .any_model import AnyModel
 from .axes import Axis, Random, drawn
 from .components import Components, name_of, unknown
 from .core_options import finish_options, make_options, options_of, takes_options
@@ -43,7 +44,7 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from .compiler import Kernel
-    from .hints import AnyModel, ByComponent, Component, Path, Precision, Progress, SomeComponents
+    from .hints import ByComponent, Component, Path, Precision, Progress, SomeComponents
     from .methods import Control, Method
 
 __all__ = ["Study", "study"]
@@ -74,7 +75,7 @@ class Study:
                units: Mapping[Any, str] | None, notes: Mapping[str, object] | None, method: Method | None,
                control: Control | Sequence[Control], options: Options, precision: Precision,
                interpreted: bool | None) -> None:
-        if not hasattr(model, "source"):
+        if not isinstance(model, AnyModel):
             raise Error(f"the model is a {type(model).__name__}: make it by myriad.model(...)")
         if precision not in ("double", "float"):
             raise Error(f"precision is {precision!r}: give \"double\" or \"float\"")
@@ -99,8 +100,8 @@ class Study:
         try:
             made = self._core = _core.Study(
                 components.names, list(components.tables.values()),
-                getattr(model, "generator", ""), "float64" if precision == "double" else "float32",
-                getattr(model, "name", None) or "model",
+                model.generator, "float64" if precision == "double" else "float32",
+                model.name or "model",
                 method_type(chosen, control, samples is not None).replace("myriad::", ""))
             made.options(core_options)
             self._set_instances(made, components, sweep, start, time, draws)
@@ -108,7 +109,7 @@ class Study:
             if draws is not None:
                 made.repeat(whole(draws, "draws", 1 << 62), "draw")
             made.seed(whole(seed, "seed", (1 << 63) - 1) & ((1 << 64) - 1))
-            check_whole_numbers(getattr(model, "generate", []), made.size, self._shared_integers)
+            check_whole_numbers(model.generate, made.size, self._shared_integers)
             self._set_kept(made, components, keep, bool(recorded or sampled or reduce))
             for reduction in reduce if isinstance(reduce, (list, tuple)) else [reduce] if reduce else []:
                 if not isinstance(reduction, Reduction):

@@ -11,15 +11,14 @@ from .errors import Error, at, users_line
 from .extended import Extended
 
 if TYPE_CHECKING:
-    from .cpp_model import CppModel
     from .hints import Array
-    from .model import Model
+    from .any_model import AnyModel
     from .run import Run
 
 __all__ = ["with_tangents", "exponents"]
 
 
-def with_tangents(model: Model | CppModel, vectors: int = 1) -> WithTangents:
+def with_tangents(model: AnyModel, vectors: int = 1) -> WithTangents:
     """The model with tangent vectors: one gives the largest Lyapunov exponent, as many as there are states the full
     spectrum. They are orthonormalised at the end of every phase, and their growth is summed from phase
     `transient_phases` on, a shared integer that is 0 unless the sweep sets it: `exponents(run)` has the result. Phases
@@ -31,11 +30,13 @@ class WithTangents(Extended):
     """A model with tangent vectors. Component c of tangent i is the state `<c>_tangent_<i>`, and the growth of tangent
     i the accessory `growth_<i>`, counted from 1."""
 
-    def __init__(self, model: Model | CppModel, vectors: int) -> None:
+    not_interpreted = "it has tangents"
+
+    def __init__(self, model: AnyModel, vectors: int) -> None:
         n = len(model.states)
         if isinstance(vectors, bool) or not isinstance(vectors, (int, np.integer)) or not 1 <= vectors <= n:
             raise Error(f"{vectors!r} tangent vectors{at(users_line())}: a model of {n} states has from 1 to {n}")
-        if getattr(model, "mass_matrix", None) is not None:
+        if model.mass_matrix is not None:
             raise Error(f"the model has a mass matrix{at(users_line())}, with which tangents of algebraic states would "
                         "not be independent: solve its algebraic equations in the others")
         self.vectors = int(vectors)

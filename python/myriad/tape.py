@@ -17,7 +17,8 @@ from .model import Model
 if TYPE_CHECKING:
     from .components import Components
     from .expression import Node
-    from .hints import AnyModel, Assignments
+    from .any_model import AnyModel
+    from .hints import Assignments
     from .model import Event, Stop
     from .trigger import Edge, Trigger
 
@@ -181,8 +182,7 @@ def library(model: AnyModel, components: Components, method: str) -> _core.Libra
     """The interpreter of the core with the tape of a traced model. Raises `Error` if the model or the method is beyond
     it."""
     if not isinstance(model, Model):
-        raise _refuse("it has tangents" if hasattr(model, "vectors") else
-                      "it has sensitivities" if hasattr(model, "by") else "it is written in C++")
+        raise _refuse(model.not_interpreted)
     if method not in methods:
         raise _refuse(f"the interpreter has the methods {', '.join(methods)} alone")
     if model.mass_matrix is not None:

@@ -23,6 +23,7 @@ from .folding import (add, apply, both, choose, compare, constant, divide, is_co
 from .per_phase import rebuilt
 
 if TYPE_CHECKING:
+    from .any_model import AnyModel
     from .hints import Assignments
     from .options import Options
 
@@ -38,15 +39,15 @@ Form = dict[Any, Any]  #: a sum: coefficients by what they multiply, which is 1,
 Time = tuple[Any, Any]  #: a time, and how far it has to be ahead to be still to come
 
 
-def note(model: Any, options: Options) -> str | None:
+def note(model: AnyModel, options: Options) -> str | None:
     """What to know of a model that jumps at times where no step ends."""
-    jumps = getattr(model, "jumps_to_miss", ())
-    if not jumps or options.maximum_step is not None or options.step is not None:
+    if not model.jumps_to_miss or options.maximum_step is not None or options.step is not None:
         return None
     rename = ("" if "stop_time" not in model.component_names else
               ", or rename 'stop_time': a model whose steps end at jumps cannot have a component of that name")
-    return (f"the model jumps where {' and '.join(f'`{jump}`' for jump in jumps)} changes, at times where no step "
-            f"ends: it may pass over what is between two of them; give a maximum_step= shorter than that{rename}")
+    jumps = " and ".join(f"`{jump}`" for jump in model.jumps_to_miss)
+    return (f"the model jumps where {jumps} changes, at times where no step ends: it may pass over what is between two "
+            f"of them; give a maximum_step= shorter than that{rename}")
 
 
 def _unit_roundoff() -> Any:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from .errors import Error, at
@@ -11,7 +11,6 @@ from .expression import integer, is_long, text, walk
 
 if TYPE_CHECKING:
     from .expression import Node
-    from .hints import Assignments
 
 _most_32 = 2**31 - 1
 _most_exact = 2**53  # what double precision and numbers of 64 bits both hold
@@ -31,7 +30,7 @@ def check_constants(nodes: Iterable[Node], assigned: Iterable[Node]) -> None:
                         f"real number write {constant.value}.0, and use an accessory")
 
 
-def check_whole_numbers(assignments: Assignments, instances: int, shared: Mapping[str, int]) -> None:
+def check_whole_numbers(assignments: Sequence[tuple[Node, Node]], instances: int, shared: Mapping[str, int]) -> None:
     """Refuses whole numbers of `generate`, [(target, value)], that a study of so many instances makes too large.
     `shared` has the values of shared integers by name. Whole numbers computed from the instance's number have 64 bits,
     all others, and integer accessories, have 32."""

@@ -366,8 +366,8 @@ def test_names_of_arguments_that_are_all_taken():
 
 
 def test_every_kind_of_component_has_names_in_every_model_and_a_symbol():
-    from myriad import kinds
+    from myriad import any_model, kinds
     plurals = [kind.plural for kind in kinds.every.values()]
-    assert sorted(plurals) == sorted(kinds.ComponentNames.__annotations__)
+    assert sorted(plurals) == sorted(any_model.ComponentNames.__annotations__)
     assert set(plurals) <= set(inspect.signature(my.CppModel).parameters)
     assert all(getattr(my, kind)(f"one_{kind}").value == (kind, f"one_{kind}") for kind in kinds.valued)
