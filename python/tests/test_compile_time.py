@@ -13,8 +13,8 @@ import pytest
 
 import example_models
 import myriad as my
-from myriad import compiler, nvrtc
-from myriad.cpp import work
+from myriad.kernels import compiler, nvrtc
+from myriad.symbolic.cost import work
 from test_gpu import network
 
 pytestmark = [pytest.mark.long, pytest.mark.as_users_compile]
@@ -56,14 +56,15 @@ def test_the_first_result_comes_in_a_second_or_two(unit, tmp_path, monkeypatch, 
     monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path / "cache"))
     if is_prepared:
         my.cache.prepare()
-    program = FIRST if is_prepared else f"from myriad import compiler\ncompiler._prepare = lambda by: None\n{FIRST}"
+    unprepared = f"from myriad.kernels import compiler\ncompiler._prepare = lambda by: None\n{FIRST}"
+    program = FIRST if is_prepared else unprepared
     assert seconds_of([sys.executable, "-c", program], stdout=subprocess.DEVNULL) < most * unit
 
 
 NETWORK = """
 import sys
 import myriad as my
-from myriad import nvrtc
+from myriad.kernels import nvrtc
 n = int(sys.argv[1])
 y, mu = my.states([f"y{i}" for i in range(n)]), my.parameter("mu")
 ring = my.model({**{y[i]: y[i + 1] for i in range(0, n, 2)},

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import myriad as my
-from myriad.derivatives import _partials as derivative_rules
-from myriad.derivatives import dependencies, derivatives, directional, transposed
-from myriad.expression import constant, evaluate
+from myriad.symbolic.derivatives import _partials as derivative_rules
+from myriad.symbolic.derivatives import dependencies, derivatives, directional, transposed
+from myriad.symbolic.expression import constant, evaluate
 
 x, y, z = my.states("x y z")
 k = my.parameter("k")

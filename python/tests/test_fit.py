@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import myriad as my
-from myriad.least_squares import LeastSquares
-from myriad.student import student_quantile
+from myriad.inference.least_squares import LeastSquares
+from myriad.inference.student_t import student_quantile
 
 x, w = my.states("x w")
 k, a, B, unused = my.parameters("k a B unused")

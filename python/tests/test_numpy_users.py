@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import myriad as my
-from myriad.expression import vector
+from myriad.symbolic.expression import vector
 
 x, v, k = my.state("x"), my.state("v"), my.parameter("k")
 
@@ -183,7 +183,7 @@ def test_polynomials_of_symbols_and_vectors_are_taken():
 
 @pytest.mark.as_users_compile
 def test_a_compiler_may_have_arguments_and_one_that_calls_it(monkeypatch):
-    from myriad import compiler
+    from myriad.kernels import compiler
 
     real = compiler.known_compiler()
     monkeypatch.delenv("MYRIAD_CXX", raising=False)

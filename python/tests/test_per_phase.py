@@ -8,8 +8,8 @@ pytest.importorskip("libsbml")
 
 import myriad as my  # noqa: E402
 from myriad import _core  # noqa: E402
-from myriad.cpp import work  # noqa: E402
-from myriad.per_phase import prepared  # noqa: E402
+from myriad.symbolic.cost import work  # noqa: E402
+from myriad.models.once_per_phase import prepared  # noqa: E402
 from sbml_models import compartment, document, event, parameter, rate, reaction, species, variable  # noqa: E402
 
 _hill = [compartment("c", 2), species("S", concentration=3), species("P", concentration=0),
