@@ -14,7 +14,7 @@ import pytest
 import example_models
 import myriad as my
 from myriad.kernels import compiler, nvrtc
-from myriad.symbolic.cost import work
+from myriad.symbolic.operations import cost
 from test_gpu import network
 
 pytestmark = [pytest.mark.long, pytest.mark.as_users_compile]
@@ -107,7 +107,7 @@ def test_large_right_hand_sides_are_called_and_small_ones_copied():
     assert "large_rhs = true" in network().cpp()
     assert [make.__name__ for make in example_models.headers if "large_rhs" in make().cpp()] == []
     x, y = my.states("x y")
-    assert work([x * y + my.sin(x), my.sin(x) - 1]) == 18  # shared subexpressions once
+    assert cost([x * y + my.sin(x), my.sin(x) - 1]) == 18  # shared subexpressions once
     chain = my.states([f"c{i}" for i in range(100)])
     rows = {c: before - c * c * c for before, c in zip(np.roll(np.array(chain), 1), chain)}
     assert "large_rhs" in my.model(rows).cpp()

@@ -13,7 +13,8 @@ import pytest
 
 import example_models
 import myriad as my
-from myriad.symbolic.expression import evaluate, walk
+from myriad.symbolic.evaluate import evaluate
+from myriad.symbolic.expression import walk
 
 x, v = my.states("x v")
 k, B = my.parameter("k"), my.shared("B")

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from .._core import factor_entries
 from ..models.mass_matrix import left_sides, mass_entries
 from ..models.units import CouplingTable
-from ..symbolic.cost import work
+from ..symbolic.operations import cost, known_of
 from ..symbolic.derivatives import dependencies, derivatives
 from ..symbolic.expression import (as_number, condition, draws, infix, integer, is_long, number_text, real, symbols_of,
                                    text, walk, write)
@@ -43,10 +43,6 @@ _of_whole_numbers = {"add": "wrapping_add", "subtract": "wrapping_subtract", "mu
                      "quotient": "floor_divide", "remainder": "floor_mod"}
 _headers = {"time": "t", "step": "h", "next_step": "h_next", "phase": "phase", "instance": "index",
             "t_begin": "t_begin", "t_end": "t_end"}
-_temporaries = {"add": "sum", "subtract": "difference", "multiply": "product", "divide": "quotient", "sqrt": "root",
-                "sin": "sine", "cos": "cosine", "exp": "exponential", "pow": "power", "powr": "power",
-                "log": "logarithm", "select": "chosen", "abs": "size", "min": "least", "max": "largest",
-                "reciprocal": "inverse", "rsqrt": "inverse_root", "hypot": "length", "negate": "opposite"}
 
 # Of several of these with equal arguments, the arguments are used once.
 _shared_work = ("sincos.sine", "sincos.cosine", "sincospi.sine", "sincospi.cosine", "dot")
@@ -124,7 +120,7 @@ class Body:
             shared = uses[id(node)] > 1 and not (node.op == "negate" and not node.args[0].args)
             early = node.op in draws and not in_order
             if node.args and (shared or early or depth[id(node)] > _deepest):
-                name = self._name(_temporaries.get(node.op, "holds" if node.type == condition else node.op))
+                name = self._name(known_of(node.op).result or ("holds" if node.type == condition else node.op))
                 self.lines.append(f"const auto {name} = {self.text(node)};")
                 self.named[id(node)] = name
                 depth[id(node)] = 0
@@ -359,7 +355,7 @@ class Writer:
         model = self.model
         declared = [name for name in ("accessories_are_outputs", "writes_parameters", "writes_time_domain")
                     if getattr(model, name)]
-        if work(model.rhs) > _largest_inlined:
+        if cost(model.rhs) > _largest_inlined:
             declared.append("large_rhs")
         return [f"static constexpr bool {name} = true;" for name in declared]
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from .. import _core
 from ..symbolic import expression as ex, symbols as sym
-from ..symbolic.cost import work
+from ..symbolic.operations import cost
 from ..symbolic.expression import draws, real, walk
 from ..symbolic.folding import constant, is_constant, value_of
 from ..symbolic.rewrite import rebuilt
@@ -43,7 +43,7 @@ class _Parts:
         divided = rebuilt(rhs, self._by_reciprocal)
         order = walk([*divided, *functions])
         used = {a for node in order if not self._is_stored(node) for a in node.args} | {*divided, *functions}
-        saved = {node: work([node]) for node in order if node in used and self._is_stored(node)}
+        saved = {node: cost([node]) for node in order if node in used and self._is_stored(node)}
         taken = [*model.component_names, *model.outputs, *model.aliases]
         self._accessories: dict[Node, Node] = {}
         for node in sorted(saved, key=lambda one: -saved[one])[:most]:

@@ -14,8 +14,9 @@ from ..base import component_kinds as kinds
 from ..base.errors import Error, at, users_line
 from ..symbolic import symbols as sym
 from ..symbolic.axes import Axis
-from ..symbolic.expression import (Node, as_condition, as_number, draws, evaluate, integer, is_sympy, real, symbols_of,
-                                   text, to_real, vector, walk)
+from ..symbolic.evaluate import evaluate
+from ..symbolic.expression import (Node, as_condition, as_number, draws, integer, is_sympy, real, symbols_of, text,
+                                   to_real, vector, walk)
 from ..symbolic.read_text import from_sympy, parse, parse_equations, sympy_name
 from ..symbolic.table import tables_of
 from ..symbolic.whole_and_real import generic_problem

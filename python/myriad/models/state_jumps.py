@@ -15,7 +15,8 @@ import numpy as np
 
 from ..base.errors import Error
 from ..symbolic import expression as ex, symbols as sym
-from ..symbolic.expression import evaluate, make, symbols_of, text, walk
+from ..symbolic.evaluate import evaluate
+from ..symbolic.expression import make, symbols_of, text, walk
 from ..symbolic.rewrite import rebuilt
 from .recorded import RecordedModel
 

@@ -16,7 +16,8 @@ from ..base.statuses import first_failure, status_names
 from ..models.components import name_of
 from ..sweeps.gpu_inputs import DeviceInput
 from ..sweeps.sweep import Sweep
-from ..symbolic.expression import evaluate, symbols_of
+from ..symbolic.evaluate import evaluate
+from ..symbolic.expression import symbols_of
 from ..symbolic.symbols import time
 from .gpu_results import DeviceResults
 from .run_plots import Plots, html

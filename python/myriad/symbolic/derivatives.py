@@ -8,83 +8,10 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from . import expression as ex
+from .operations import known_of
 
 if TYPE_CHECKING:
-    from .expression import Condition, Expression, Node, Operand
-
-_ln2, _ln10 = 0.6931471805599453, 2.302585092994046
-
-
-# The partial derivatives of an operation by its arguments: None where it does not depend on one, a condition where the
-# argument is passed on if it holds.
-_partials: dict[str, Callable[..., Sequence[Any]]] = {
-    "add": lambda f, a, b: (1, 1),
-    "subtract": lambda f, a, b: (1, -1),
-    "multiply": lambda f, a, b: (b, a),
-    "divide": lambda f, a, b: (1 / b, -f / b),
-    "negate": lambda f, a: (-1,),
-    "fma": lambda f, a, b, c: (b, a, 1),
-    "reciprocal": lambda f, a: (-f * f,),
-    "rsqrt": lambda f, a: (-0.5 * (f * f * f),),
-    "sqrt": lambda f, a: (0.5 / f,),
-    "cbrt": lambda f, a: (1 / (3 * f * f),),
-    "abs": lambda f, a: (ex.copysign(1.0, a),),
-    "floor": lambda f, a: (None,),
-    "rint": lambda f, a: (None,),
-    "sin": lambda f, a: (ex.cos(a),),
-    "cos": lambda f, a: (-ex.sin(a),),
-    "sinpi": lambda f, a: (ex.pi * ex.cospi(a),),
-    "cospi": lambda f, a: (-ex.pi * ex.sinpi(a),),
-    "sincos.sine": lambda f, a: (ex.sincos(a)[1],),
-    "sincos.cosine": lambda f, a: (-ex.sincos(a)[0],),
-    "sincospi.sine": lambda f, a: (ex.pi * ex.sincospi(a)[1],),
-    "sincospi.cosine": lambda f, a: (-ex.pi * ex.sincospi(a)[0],),
-    "tan": lambda f, a: (1 + f * f,),
-    "asin": lambda f, a: (1 / ex.sqrt(1 - a * a),),
-    "acos": lambda f, a: (-1 / ex.sqrt(1 - a * a),),
-    "atan": lambda f, a: (1 / (1 + a * a),),
-    "sinh": lambda f, a: (ex.cosh(a),),
-    "cosh": lambda f, a: (ex.sinh(a),),
-    "tanh": lambda f, a: (1 - f * f,),
-    "exp": lambda f, a: (f,),
-    "exp2": lambda f, a: (_ln2 * f,),
-    "expm1": lambda f, a: (ex.exp(a),),
-    "log": lambda f, a: (1 / a,),
-    "log1p": lambda f, a: (1 / (1 + a),),
-    "log2": lambda f, a: (1 / (_ln2 * a),),
-    "log10": lambda f, a: (1 / (_ln10 * a),),
-    "hypot": lambda f, a, b: (_quotient(a, f), _quotient(b, f)),
-    "atan2": lambda f, a, b: (_quotient(b, a * a + b * b), _quotient(-a, a * a + b * b)),
-    "fmod": lambda f, a, b: (1, -ex.round((a - f) / b)),
-    "floor_mod": lambda f, a, b: (1, -(a // b)),
-    "floor_divide": lambda f, a, b: (None, None),
-    "copysign": lambda f, a, b: (ex.copysign(1.0, a) * ex.copysign(1.0, b), None),
-    "select": lambda f, chosen, a, b: (None, chosen, ~chosen),
-    "min": lambda f, a, b: (a < b, ~(a < b)),
-    "max": lambda f, a, b: (a > b, ~(a > b)),
-    "pow": lambda f, a, b: _of_power(f, a, b, ex.pow),
-    "powr": lambda f, a, b: _of_power(f, a, b, ex.powr),
-    "dot": lambda f, *_: [ex.make("element", value=(f.value[0], place)) for place in f.value[0].places(f.value[1])],
-    "find_interval": lambda f, *_: (None,),
-}
-
-
-# Functions with finite values where a partial derivative is infinite, or a product that has no value, as sqrt at zero.
-_singular = {"sqrt", "cbrt", "asin", "acos", "log", "log1p", "log2", "log10", "hypot", "atan2", "pow", "powr"}
-
-
-def _quotient(a: Expression, by: Expression) -> Expression:
-    """a / by; zero where both are."""
-    return ex.where(by == 0.0, 0.0, a / by)
-
-
-def _of_power(f: Expression, base: Expression, exponent: Expression,
-              power: Callable[[Operand, Operand], Expression]) -> tuple[Expression, Expression | None]:
-    slope = exponent * power(base, exponent - 1)
-    if exponent.op == "constant":
-        return slope, None
-    return ex.where(exponent == 0.0, 0.0, slope), ex.where(f == 0.0, 0.0, f * ex.log(base))
-
+    from .expression import Condition, Expression, Node
 
 def _times(partial: Expression | Condition | int, derivative: Expression) -> Expression:
     """A product in which a condition chooses between the derivative and zero."""
@@ -104,7 +31,7 @@ def _forwards(node: Node, argument: Node, partial: Expression | Condition | int,
     if derivative.op == "constant" and derivative.value == 0:
         return derivative
     if isinstance(partial, ex.Expression) and derivative.op != "constant":
-        if node.op in _singular:  # so that it has the right derivatives in its turn
+        if known_of(node.op).is_singular:  # so that it has the right derivatives in its turn
             partial = ex.where(ex.is_finite(partial) | (derivative != 0.0), partial, 0.0)
         elif node.op in ("exp", "exp2") and id(argument) in singular:
             return ex.where(partial == 0.0, 0.0, partial * derivative)
@@ -115,7 +42,7 @@ def _with_singular(order: Sequence[Node]) -> set[int]:
     """Nodes whose derivatives may be infinite."""
     found: set[int] = set()
     for node in order:
-        if node.op in _singular or any(id(a) in found for a in node.args):
+        if known_of(node.op).is_singular or any(id(a) in found for a in node.args):
             found.add(id(node))
     return found
 
@@ -145,7 +72,7 @@ def derivatives(roots: Sequence[Node], symbols: Sequence[Node]) -> list[dict[int
         if id(node) in number:
             total[number[id(node)]] = one
         elif node.type == ex.real and any(found[id(a)] for a in node.args):
-            rule = _partials.get(node.op)
+            rule = known_of(node.op).partials
             if rule is None:
                 return None
             for partial, argument in zip(rule(node, *node.args), node.args):
@@ -160,7 +87,7 @@ def derivatives(roots: Sequence[Node], symbols: Sequence[Node]) -> list[dict[int
 
 def _cheap_rule(op: str) -> Callable[..., Sequence[Any]] | None:
     """The derivatives of an operation by its arguments: of a quotient with one division, where the rule has three."""
-    return (lambda f, a, b: (1 / b, -(a * (1 / b)) * (1 / b))) if op == "divide" else _partials.get(op)
+    return (lambda f, a, b: (1 / b, -(a * (1 / b)) * (1 / b))) if op == "divide" else known_of(op).partials
 
 
 def transposed(roots: Sequence[Node], weights: Sequence[Expression],
@@ -211,11 +138,11 @@ def transposed(roots: Sequence[Node], weights: Sequence[Expression],
             if isinstance(partial, ex.Condition):
                 is_conditional = True
             elif isinstance(partial, ex.Node) and partial.op != "constant":
-                if is_conditional or node.op in _singular:
+                if is_conditional or known_of(node.op).is_singular:
                     term = ex.where(weight == 0.0, 0.0, term)
                 if is_singular:
                     term = ex.where(partial == 0.0, 0.0, term)
-                is_singular = is_singular or node.op in _singular
+                is_singular = is_singular or known_of(node.op).is_singular
                 is_conditional = is_conditional or node.op in ("exp", "exp2") and id(argument) in above_singular
             add(argument, term, is_conditional, is_singular)
     return [by.get(id(s), ex.constant(0.0)) for s in symbols]

@@ -491,16 +491,6 @@ def _logical(op: str, a: object, b: object) -> Condition:
 # ----------------------------------------------------------------------------------------------------------------------
 
 
-_unary: dict[str, Callable[..., Any]] = {  # for the values of constants and for `evaluate`; C++ uses myriad's own
-    "sqrt": np.sqrt, "cbrt": np.cbrt, "floor": np.floor, "sin": np.sin, "cos": np.cos, "tan": np.tan,
-    "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan, "sinh": np.sinh, "cosh": np.cosh, "tanh": np.tanh,
-    "exp": np.exp, "exp2": np.exp2, "log": np.log, "log2": np.log2, "log10": np.log10,
-    "reciprocal": lambda x: 1.0 / x, "rsqrt": lambda x: 1.0 / np.sqrt(x),
-    "rint": np.rint, "expm1": np.expm1, "log1p": np.log1p,
-    "sinpi": lambda x: np.sin(np.pi * (x - 2.0 * np.rint(0.5 * x))),
-    "cospi": lambda x: np.cos(np.pi * (x - 2.0 * np.rint(0.5 * x))),
-}
-
 Operand = Union[Expression, float]  #: what stands in an equation
 
 
@@ -797,51 +787,3 @@ def text(node: Node) -> str:
                     lambda *_: None, lambda n: _as_in_python.get(n.op))
     written = written.replace("&&", "and").replace("||", "or").replace("!(", "not (")
     return written if len(written) <= 100 else written[:97] + "..."
-
-
-# ----------------------------------------------------------------------------------------------------------------------
-# Values
-# ----------------------------------------------------------------------------------------------------------------------
-
-_operations: dict[str, Callable[..., Any]] = {
-    "add": operator.add, "subtract": operator.sub, "multiply": operator.mul, "divide": operator.truediv,
-    "quotient": np.floor_divide, "remainder": np.mod, "floor_divide": np.floor_divide, "floor_mod": np.mod,
-    "fmod": np.fmod, "negate": operator.neg, "less": operator.lt,
-    "less_equal": operator.le, "greater": operator.gt, "greater_equal": operator.ge, "equal": operator.eq,
-    "not_equal": operator.ne, "and": np.logical_and, "or": np.logical_or, "not": np.logical_not, "select": np.where,
-    "is_finite": np.isfinite, "abs": np.abs, "min": np.fmin, "max": np.fmax, "pow": np.power, "powr": np.power,
-    "atan2": np.arctan2, "hypot": np.hypot, "copysign": np.copysign, "fma": lambda a, b, c: a * b + c,
-    "sincos.sine": np.sin, "sincos.cosine": np.cos, "sincospi.sine": _unary["sinpi"],
-    "sincospi.cosine": _unary["cospi"], **_unary,
-}
-
-
-def evaluate(roots: Sequence[Node], values: Mapping[Any, Any]) -> list[Any]:
-    """The values of expressions by NumPy: `values` has a number or an array for each symbol. Slow; a second opinion for
-    tests and for looking at a model. Where C++ has functions of its own, the last places differ."""
-    known = {}
-    with np.errstate(all="ignore"):
-        for node in walk(roots):
-            if node.op == "symbol":
-                given = np.asarray(values[node])
-                is_whole = node.type == real and given.dtype.kind in "biu"
-                known[id(node)] = (given.astype(float) if is_whole else given)[()]
-            elif node.op in ("constant", "truth"):
-                known[id(node)] = np.float64(node.value) if node.type == real else node.value
-            elif node.op == "element":
-                known[id(node)] = node.value[0].values.flat[node.value[1]]
-            elif node.op == "dot":
-                table, row = node.value
-                known[id(node)] = sum(table.values.flat[place] * known[id(a)]
-                                      for place, a in zip(table.places(row), node.args))
-            elif node.op == "lookup":
-                table, first, stride, rows = node.value
-                row = np.clip(np.nan_to_num(known[id(node.args[0])]), 0, rows - 1).astype(int)
-                known[id(node)] = table.values[first + stride * row]
-            elif node.op == "find_interval":
-                table, first, knots = node.value
-                place = np.searchsorted(table.values[first:first + knots], known[id(node.args[0])], side="right")
-                known[id(node)] = np.clip(place - 1, 0, knots - 2)
-            else:
-                known[id(node)] = _operations[node.op](*(known[id(a)] for a in node.args))
-    return [known[id(root)] for root in roots]

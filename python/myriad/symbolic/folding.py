@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from . import expression as ex
+from .evaluate import evaluate
 from .expression import Expression, as_node
 
 
@@ -41,7 +42,7 @@ def value_of(node: Any) -> Any:
 def folded(node: Any) -> Any:
     """The constant that an operation of constants is; other expressions as they are."""
     if node.args and node is not nan and all(is_constant(a) for a in node.args):
-        value, = ex.evaluate([node], {})
+        value, = evaluate([node], {})
         return constant(bool(value) if node.type == ex.condition else value)
     return node
 
@@ -154,7 +155,7 @@ def apply(function: Callable[..., Any], *arguments: Any) -> Any:
     if not all(is_constant(a) for a in arguments):
         return as_node(function(*arguments))
     symbols = [ex.make("symbol", value=("argument", str(i))) for i in range(len(arguments))]
-    value, = ex.evaluate([as_node(function(*symbols))], dict(zip(symbols, map(value_of, arguments))))
+    value, = evaluate([as_node(function(*symbols))], dict(zip(symbols, map(value_of, arguments))))
     return constant(value)
 
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from ..base.errors import Error, at, users_line
 from . import expression as ex
+from .operations import known_of
 
 if TYPE_CHECKING:
     from .expression import Condition, Expression, Operand
@@ -77,12 +78,10 @@ def _of_nodes(operation: Callable[[Any, Any], Any]) -> Callable[[object, object]
 
 
 def _table() -> dict[Any, Callable[..., Any]]:
-    table = {getattr(np, name): getattr(ex, name) for name in (
-        "sqrt", "cbrt", "floor", "ceil", "trunc", "sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "exp2", "expm1",
-        "log", "log2", "log10", "log1p", "hypot", "copysign", "fmod", "reciprocal")}
-    for name in ("asin", "acos", "atan", "atan2"):
-        table[getattr(np, name.replace("a", "arc", 1))] = getattr(ex, name)
+    table = {known_of(name).value: getattr(ex, name) for name in ex.__all__
+             if isinstance(known_of(name).value, np.ufunc)}
     table.update({
+        np.ceil: ex.ceil, np.trunc: ex.trunc, np.reciprocal: ex.reciprocal,
         np.absolute: ex.abs, np.fabs: ex.abs, np.minimum: ex.minimum, np.maximum: ex.maximum, np.fmin: ex.minimum,
         np.fmax: ex.maximum, np.power: ex.pow, np.float_power: lambda x, y: ex.pow(ex.to_real(ex.as_number(x)), y),
         np.square: lambda x: x * x, np.rint: ex.round, np.sign: _sign, np.isfinite: ex.is_finite, np.isnan: _is_nan,

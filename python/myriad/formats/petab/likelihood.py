@@ -17,7 +17,8 @@ from ...solving.core_options import per_state
 from ...solving.options import Options
 from ...solving.solve import solve
 from ...symbolic.derivatives import derivatives
-from ...symbolic.expression import Node, evaluate, symbols_of
+from ...symbolic.evaluate import evaluate
+from ...symbolic.expression import Node, symbols_of
 from ...symbolic.symbols import time
 from ..sbml.model import SbmlModel
 from .priors import Prior, scaled_by

@@ -17,7 +17,8 @@ from ...base.errors import Error, users_line
 from ...codegen.model import Model
 from ...models.event import Event, event
 from ...symbolic import expression as ex, symbols as sym
-from ...symbolic.expression import evaluate, symbols_of
+from ...symbolic.evaluate import evaluate
+from ...symbolic.expression import symbols_of
 from ...symbolic.folding import compare, constant, is_constant, value_of
 from ...symbolic.interpolate import interpolate
 from ..deep_stack import deeply
