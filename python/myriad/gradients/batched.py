@@ -14,11 +14,10 @@ from ..base.errors import Error
 from ..base.statuses import first_failure
 from ..kernels.devices import device_names
 from ..models import state_jumps
-from ..models.components import Components, by_component, unknown
+from ..models.components import Components, by_component, listed, unknown
 from ..solving.solve import solve
 from ..sweeps.gpu_inputs import is_on_gpu
 from ..sweeps.inputs import by_name, whole
-from ..symbolic.expression import Node
 from ..symbolic.symbols import time as time_symbol
 from .adjoint import Adjoint
 
@@ -32,10 +31,6 @@ if TYPE_CHECKING:
 __all__ = ["Batched", "batched"]
 
 
-def _listed(chosen: SomeComponents) -> list[Any]:
-    return [chosen] if isinstance(chosen, (str, Node)) else list(chosen)
-
-
 class Batched:
     """A function of values of the components `by`, in the last axis of its argument, whose other axes are those of a
     batch: all of it is integrated by one call of `solve`. The result has the axes of the batch, one of the samples, if
@@ -45,8 +40,8 @@ class Batched:
                  start: ByComponent | None, options: Mapping[str, Any], adjoint: bool = False) -> None:
         components = Components(model)
         self.model = model
-        self.by = [components.component(one) for one in _listed(by)]  #: names of the components that vary
-        self.of: list[Component] = [one if one is time_symbol else components.component(one) for one in _listed(of)]
+        self.by = [components.component(one) for one in listed(by)]  #: names of the components that vary
+        self.of: list[Component] = [one if one is time_symbol else components.component(one) for one in listed(of)]
         possible = components.of(("state", "parameter"))
         for name in self.by:
             if components.place.get(name, ("",))[0] in kinds.shared:

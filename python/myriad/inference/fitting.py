@@ -4,17 +4,16 @@ ensemble in every iteration; what the result is worth."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
 
 from ..base import plots
 from ..base.errors import Error
-from ..models.components import by_component, name_of, unknown
+from ..models.components import by_component, listed, name_of, unknown
 from ..results.run import Interrupted, Run
 from ..sweeps.inputs import whole
-from ..symbolic.expression import Node
 from .designs import hypercube
 from .least_squares import LeastSquares
 from .levenberg_marquardt import Descent, status_names
@@ -147,8 +146,7 @@ class Fit(Generic[SomeObjective]):
         if names is None:
             chosen = [name for name in free if name not in self.without_influence]
         else:
-            listed: Iterable[Any] = [names] if isinstance(names, (str, Node)) else names
-            chosen = [name_of(name) for name in listed]
+            chosen = [name_of(name) for name in listed(names)]
         for name in chosen:
             if name not in free:
                 raise unknown(name, free, "free component of the fit")

@@ -34,6 +34,11 @@ def name_of(key: Component) -> str:
     raise Error(f"{key!r} is no component of a model: give a symbol, such as x, or its name, such as \"x\"")
 
 
+def listed(chosen: SomeComponents) -> list[Any]:
+    """One component or several, as a list."""
+    return [chosen] if isinstance(chosen, (str, Node)) else list(chosen)
+
+
 def by_component(values: ByComponent, what: str) -> dict[str, Any]:
     """Values by the names of components; refuses one that is given by its symbol and by its name."""
     named: dict[str, Any] = {}

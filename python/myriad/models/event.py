@@ -13,6 +13,7 @@ from ..base import component_kinds as kinds
 from ..base.errors import Error, at, users_line
 from ..symbolic import symbols as sym
 from ..symbolic.expression import symbols_of
+from ..symbolic.numbers import is_whole
 
 if TYPE_CHECKING:
     from ..symbolic.types import ByComponent, Direction, Written
@@ -78,7 +79,7 @@ def event(function: Written, *, name: str | None = None, direction: Direction = 
     if direction not in _directions:
         raise Error(f"the direction of an event is {direction!r}{at(users_line())}: choose \"rising\", \"falling\", "
                     "\"either\" or \"none\"")
-    if isinstance(stop_after, bool) or not isinstance(stop_after, (int, np.integer)) or stop_after < 0:
+    if not is_whole(stop_after, 0):
         raise Error(f"stop_after is {stop_after!r}{at(users_line())}: give the number of detections after which the "
                     "phase ends, 0 for never")
     if tolerance is not None and not (isinstance(tolerance, (int, float)) and 0 <= tolerance < float("inf")):

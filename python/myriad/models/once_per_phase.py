@@ -16,7 +16,7 @@ from ..symbolic import expression as ex, symbols as sym
 from ..symbolic.operations import cost
 from ..symbolic.expression import draws, real, walk
 from ..symbolic.folding import constant, is_constant, value_of
-from ..symbolic.rewrite import rebuilt
+from ..symbolic.rewrite import rebuilt, replaced
 from .any_model import counts_of
 
 if TYPE_CHECKING:
@@ -88,7 +88,7 @@ class _Parts:
         return self._with_accessories(self._functions)
 
     def _with_accessories(self, roots: list[Expression]) -> list[Expression]:
-        return rebuilt(roots, lambda node: node, self._accessories)
+        return replaced(roots, self._accessories)
 
 
 def _room(model: RecordedModel) -> int:

@@ -10,7 +10,7 @@ from ..base.errors import Error, at, users_line
 from ..symbolic.expression import Node
 from ..symbolic.symbols import t_begin, t_end
 from . import state_jumps
-from .components import Components, unknown
+from .components import Components, listed, unknown
 from .extended import Extended
 from .recorded import RecordedModel
 
@@ -62,7 +62,7 @@ class WithSensitivities(Extended):
             raise Error(f"the model has a mass matrix{line}, with which initial values of algebraic states would not "
                         "be independent: solve its algebraic equations in the others")
         kinds_of = ("state", "parameter", "shared")
-        wanted = [by] if isinstance(by, (str, Node)) else list(by)
+        wanted = listed(by)
         names = [name_of_derivative(own, one) for one in wanted]
         possible = [name for name in own.of(kinds_of) if name not in own.tables]
         both = next((name for name in ends_of_domain.values() if name in names and name in own.place), None)

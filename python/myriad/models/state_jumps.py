@@ -17,7 +17,7 @@ from ..base.errors import Error
 from ..symbolic import expression as ex, symbols as sym
 from ..symbolic.evaluate import evaluate
 from ..symbolic.expression import make, symbols_of, text, walk
-from ..symbolic.rewrite import rebuilt
+from ..symbolic.rewrite import rebuilt, replaced
 from .recorded import RecordedModel
 
 if TYPE_CHECKING:
@@ -130,7 +130,7 @@ def _difference(node: Any, surface: _Surface, roots: Sequence[Any], at: Mapping[
                 whole: Array) -> tuple[Array, Array]:
     """By how much expressions differ between the values of an operation on either side, and how large they are."""
     forced = make("symbol", value=("forced", "value"), type=node.type)
-    with_value = rebuilt(list(roots), lambda one: one, {node: forced})
+    with_value = replaced(list(roots), {node: forced})
     first, second = (np.array(np.broadcast_arrays(*evaluate(with_value, {**at, forced: value}), whole)[:-1], float)
                      for value in surface.values(node, at, whole))
     with np.errstate(all="ignore"):

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..base.errors import Error, at, users_line
+from ..symbolic.numbers import is_whole
 from .extended import Extended
 
 if TYPE_CHECKING:
@@ -32,7 +33,7 @@ class WithTangents(Extended):
 
     def __init__(self, model: AnyModel, vectors: int) -> None:
         n = len(model.states)
-        if isinstance(vectors, bool) or not isinstance(vectors, (int, np.integer)) or not 1 <= vectors <= n:
+        if not is_whole(vectors, 1, n):
             raise Error(f"{vectors!r} tangent vectors{at(users_line())}: a model of {n} states has from 1 to {n}")
         if model.mass_matrix is not None:
             raise Error(f"the model has a mass matrix{at(users_line())}, with which tangents of algebraic states would "

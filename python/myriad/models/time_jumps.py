@@ -20,7 +20,7 @@ from ..symbolic import expression as ex, symbols as sym
 from ..symbolic.expression import symbols_of, text, walk
 from ..symbolic.folding import (add, apply, both, choose, compare, constant, divide, is_constant, make_folded,
                                 multiply, subtract, total, value_of)
-from ..symbolic.rewrite import rebuilt
+from ..symbolic.rewrite import rebuilt, replaced
 
 if TYPE_CHECKING:
     from ..symbolic.types import Assignments
@@ -137,7 +137,7 @@ class TimeSwitches:
             between |= {whole: inside[whole]} if whole is not None else inside
         self.located = {node for node, several in found.items() if several is not None}
         if self.switches:
-            jumping = rebuilt(jumping, lambda node: node, between)
+            jumping = replaced(jumping, between)
             self.equations, self.quantities = dict(zip(states, jumping)), jumping[len(states):]
 
     @property
@@ -205,7 +205,7 @@ class TimeSwitches:
             known[sym.time] = known[sym.t_begin]
         further = {target: value for one in self.switches if begins or not one.needed.isdisjoint(known)
                    for target, value in one.at_start.items()}
-        return [*assignments, *zip(further, rebuilt(list(further.values()), lambda node: node, known))]
+        return [*assignments, *zip(further, replaced(list(further.values()), known))]
 
     def _may_jump(self, node: Any) -> bool:
         return node.op in (*_comparisons, *_whole) and node.value != ex.continuous and self._is_of_time(node)
@@ -233,7 +233,7 @@ class TimeSwitches:
     def _at(self, node: Any, time: Any) -> Any:
         """An expression at another time."""
         clocks = {s: s + rate * (time - sym.time) for s, rate in self._clocks.items()}
-        return rebuilt([node], lambda one: one, {sym.time: time, **clocks})[0]
+        return replaced([node], {sym.time: time, **clocks})[0]
 
     def _first(self, times: list[Time]) -> Any:
         """The first of some times that is still to come, infinite if there is none. Multiplied by the direction, so
@@ -247,7 +247,7 @@ class TimeSwitches:
         inside = self._at(node, middle)
         if node.op not in _remainders:
             return inside
-        value, = rebuilt([node.args[0]], lambda one: one, known)
+        value, = replaced([node.args[0]], known)
         return subtract(value, subtract(self._at(node.args[0], middle), inside))  # less whole multiples
 
     # -- When it jumps -------------------------------------------------------------------------------------------------

@@ -12,6 +12,7 @@ from ..base.errors import Error, at, users_line
 from ..symbolic import expression as ex, symbols as sym
 from ..symbolic.expression import symbols_of, text
 from ..symbolic.folding import both, either, is_constant, number, opposite, subtract, value_of
+from ..symbolic.numbers import is_whole
 
 if TYPE_CHECKING:
     from ..symbolic.expression import Expression
@@ -55,7 +56,7 @@ def trigger(condition: Written, *, do: ByComponent | None = None, delay: Written
     counts as before the start: with False, one that holds at the start comes to hold there.
     """
     line = at(users_line())
-    if room is not None and (isinstance(room, bool) or not isinstance(room, (int, np.integer)) or room < 1):
+    if room is not None and not is_whole(room, 1):
         raise Error(f"the room of a trigger is {room!r}{line}: give the number of its actions that may wait at one "
                     "time, as in room=10")
     if room is not None and room > _most_waiting:
@@ -77,8 +78,7 @@ class Queue:
     stop = "due"  #: the kind of stop times at which they run
 
     def __init__(self, triggers: Sequence[Trigger], seed: int | None) -> None:
-        if not triggers or seed is not None and (isinstance(seed, bool) or not isinstance(seed, (int, np.integer)) or
-                                                 not 0 <= seed < 2**63):
+        if not triggers or seed is not None and not is_whole(seed, 0, 2**63 - 1):
             raise Error(f"tie_seed is {seed!r}{at(users_line())}: give a model with triggers a whole number from 0 on")
         self.seed = -1 if seed is None else int(seed)  #: of the order of actions of one priority; -1: as triggered
         self.capacity, self.values = sum(t.room for t in triggers), max(len(t.values) for t in triggers)

@@ -11,7 +11,7 @@ import numpy as np
 from ..base.errors import Error, at, users_line
 from ..symbolic import symbols as sym
 from ..symbolic.expression import Node, Vector, as_number, integer, make, real, to_real, vector
-from ..symbolic.numbers import as_numbers
+from ..symbolic.numbers import as_numbers, is_whole
 from ..symbolic.table import Table
 from .event import Event, Summary, event
 
@@ -36,11 +36,10 @@ class UnitVector(Vector):
 def units(count: int, *, threads_per_instance: int | None = None) -> Units:
     """`count` units that are alike: `ring = myriad.units(14)`, `x, v = ring.states("x v")`. On a GPU, so many threads
     integrate an instance together, a power of two up to 256; without a number as many as suit the number of states."""
-    if isinstance(count, bool) or not isinstance(count, (int, np.integer)) or count < 1:
+    if not is_whole(count, 1):
         raise Error(f"there are {count!r} units{at(users_line())}: give their number, as in myriad.units(14)")
     if threads_per_instance is not None and not (
-            isinstance(threads_per_instance, (int, np.integer)) and not isinstance(threads_per_instance, bool)
-            and threads_per_instance in (1, 2, 4, 8, 16, 32, 64, 128, 256)):
+            is_whole(threads_per_instance, 1, 256) and int(threads_per_instance).bit_count() == 1):
         raise Error(f"threads_per_instance is {threads_per_instance!r}{at(users_line())}: give a power of two "
                     "from 1 to 256, or leave it out")
     return Units(int(count), threads_per_instance)
@@ -167,7 +166,7 @@ class Units:
 
     @staticmethod
     def _check_bandwidth(name: str, bandwidth: Any, most: int) -> None:
-        if isinstance(bandwidth, bool) or not isinstance(bandwidth, (int, np.integer)) or not 0 <= bandwidth <= most:
+        if not is_whole(bandwidth, 0, most):
             raise Error(f"the bandwidth of the coupling {name} is {bandwidth!r}{at(users_line())}: give a whole number "
                         f"from 0 to {most}")
 

@@ -8,12 +8,12 @@ from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING, Any
 
 from ..base.errors import Error
-from ..models.components import Components, by_component
+from ..models.components import Components, by_component, listed
 from ..models.sensitivities import WithSensitivities, ends_of_domain
 from ..sweeps.inputs import real
 from ..symbolic import folding
 from ..symbolic.derivatives import derivatives
-from ..symbolic.expression import Node, symbols_of
+from ..symbolic.expression import symbols_of
 from ..symbolic.symbols import t_begin, time
 from .core_options import per_state
 
@@ -25,10 +25,10 @@ _not_controlled = 1e30  # a tolerance that no error exceeds
 
 def _derivatives_of(model: WithSensitivities, chosen: Any, components: Components) -> list[Any]:
     """Some components and their derivatives."""
-    listed = [chosen] if isinstance(chosen, (str, Node)) else list(chosen)
-    names = [components.component(one) for one in listed]
+    given = listed(chosen)
+    names = [components.component(one) for one in given]
     have = [n for n in names if components.place.get(n, ("",))[0] in ("state", "accessory")]
-    return [*listed, *(f"{n}_by_{k}" for k in model.by for n in have if f"{n}_by_{k}" in components.place)]
+    return [*given, *(f"{n}_by_{k}" for k in model.by for n in have if f"{n}_by_{k}" in components.place)]
 
 
 def with_derivatives(model: WithSensitivities, given: Options, components: Components) -> Options:

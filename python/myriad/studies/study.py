@@ -21,7 +21,7 @@ from ..kernels.choose import kernel_for
 from ..kernels.devices import device_names
 from ..models import time_jumps
 from ..models.any_model import AnyModel
-from ..models.components import Components, name_of, unknown
+from ..models.components import Components, listed, name_of, unknown
 from ..models.methods import default, fixed_step, method_type
 from ..models.once_per_phase import prepared
 from ..models.sensitivities import note_on
@@ -253,7 +253,7 @@ class Study:
             keep = {"end": keep}
         only(keep, _keep_choices, "keep=")
         end = keep.get("end", ())
-        end = [end] if isinstance(end, (str, Node)) else list(end)
+        end = listed(end)
         names = ["t" if key is time_symbol else self._full_name(key) for key in end]
         made.keep(names, *(bool(keep.get(choice, choice != "work")) for choice in _keep_choices[1:]))
 

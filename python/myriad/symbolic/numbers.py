@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import decimal
+import math
 import numbers
 from typing import TYPE_CHECKING, Any
 
@@ -29,3 +30,8 @@ def as_numbers(values: Any) -> Array:
             raise Error(f"a value is too large for double precision{at(users_line())}: give numbers up to 1.8e308"
                         ) from None
     return array
+
+
+def is_whole(value: object, least: int, largest: float = math.inf) -> bool:
+    """Whether it is a whole number between two; truth values are none."""
+    return isinstance(value, (int, np.integer)) and not isinstance(value, bool) and least <= int(value) <= largest

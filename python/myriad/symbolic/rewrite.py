@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def rebuilt(roots: list[Expression], changed: Callable[[Node], Any],
-             known: dict[Node, Node] | None = None) -> list[Expression]:
+             known: Mapping[Any, Any] | None = None) -> list[Expression]:
     """Expressions with each operation as `changed` gives it, and those that are known replaced."""
     made: dict[Node, Any] = {}
     for node in walk(roots):
@@ -28,6 +28,11 @@ def rebuilt(roots: list[Expression], changed: Callable[[Node], Any],
     return [made[root] for root in roots]
 
 
+def replaced(roots: list[Expression], values: Mapping[Any, Any]) -> list[Expression]:
+    """Expressions with others in the place of some nodes."""
+    return rebuilt(roots, lambda node: node, values)
+
+
 def substituted(expression: Expression, values: Mapping[Any, float]) -> Expression:
     """An expression with the values of some symbols in their place."""
-    return rebuilt([expression], lambda node: node, {s: constant(float(v)) for s, v in values.items()})[0]
+    return replaced([expression], {s: constant(float(v)) for s, v in values.items()})[0]
