@@ -268,7 +268,7 @@ def test_ctrl_c_in_a_fit_keeps_the_best_point(monkeypatch):
         return result
 
     monkeypatch.setattr(LeastSquares, "evaluate", interrupted)
-    given = {"free": free, "interpreted": True, **usual}
+    given = {"free": free, **usual}
     with pytest.raises(my.Interrupted, match=r"the least loss so far is .*; \.fit has its values") as raised:
         my.fit(model, measured(), starts=5, **given)
     fit = raised.value.fit
