@@ -40,7 +40,7 @@ SHOWN = re.compile(r"<!-- shown: (?P<source>\S.*) -->")
 CHECKED_LANGUAGES = ("cpp", "c++", "cmake", "python", "julia", "cuda")
 SHELL = ("sh", "bash", "console")
 DOCUMENTS = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "benchmarks/README.md", "validation/gpu/README.md")
-SKIPPED_FOLDERS = {".git", "build", "results", ".cache", ".deps", "__pycache__"}
+SKIPPED_FOLDERS = {".git", "build", ".cache", ".deps", "__pycache__"}  # and results of runs
 FILE_ENDINGS = "hpp|cuh|cpp|cu|py|sh|cmake|md|csv|txt|png|svg|in|json|jl"
 
 
@@ -110,7 +110,8 @@ def all_files():
     """The files of the repository, as paths from its root."""
     found = []
     for folder, folders, names in os.walk(ROOT):
-        folders[:] = [name for name in folders if name not in SKIPPED_FOLDERS]
+        folders[:] = [name for name in folders if name not in SKIPPED_FOLDERS and
+                      (name != "results" or pathlib.Path(folder) != ROOT)]
         found += [str(pathlib.Path(folder, name).relative_to(ROOT)) for name in names]
     return found
 

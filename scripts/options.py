@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""What is written of the table of options, include/myriad/host/options/option_table.hpp: python/myriad/options.py, and
-the table in docs/solving.md.
+"""What is written of the table of options, include/myriad/host/options/option_table.hpp:
+python/myriad/solving/options.py, and the table in docs/solving.md.
 
 Usage: PYTHON scripts/options.py (--check | --fix)
 
@@ -18,7 +18,7 @@ import sys
 import textwrap
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-PYTHON = ROOT / "python/myriad/options.py"
+PYTHON = ROOT / "python/myriad/solving/options.py"
 DOCUMENT = ROOT / "docs/solving.md"
 BEGIN, END = "<!-- options: written by scripts/options.py -->\n", "<!-- end of options -->\n"
 
@@ -72,7 +72,7 @@ def python_module(rows, option_names):
              '"""The options of `solve` and `study`. Written by scripts/options.py from the table of options."""', '',
              'from __future__ import annotations', '', 'from collections.abc import Mapping',
              'from dataclasses import dataclass', 'from typing import Literal, TypedDict', '',
-             'from .hints import Component, SomeComponents, Tolerance, Values', '',
+             'from ..symbolic.types import Component, SomeComponents, Tolerance, Values', '',
              '__all__ = ["EventChoice", "Options", "RecordChoice", "SampleChoice"]', '']
     for struct, name, what in (("events", "EventChoice", "How an event is detected, instead of what the model says."),
                                ("record", "RecordChoice", "What is kept at the end of each phase."),
@@ -129,7 +129,7 @@ def main(arguments):
     if arguments not in (["--check"], ["--fix"]):
         print(__doc__.strip())
         return 0 if arguments in (["-h"], ["--help"]) else 2
-    option_names = loaded("option_names", ROOT / "python/myriad/option_names.py")
+    option_names = loaded("option_names", ROOT / "python/myriad/base/option_names.py")
     package = importlib.util.find_spec("myriad").submodule_search_locations[0]  # which need not be importable
     core = next(pathlib.Path(package).glob("_core*.so"))
     rows = loaded("myriad._core", core).option_rows()

@@ -19,25 +19,29 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PACKAGE = "python/myriad"
 
-# The pages, and the modules whose names they have. A public name of another module is an error.
+# The pages, and the files whose names they have. A public name of another file is an error.
 PAGES = {
     "python_solve": ("Python: solve and runs", "What a call takes and returns.",
-                     ["solve", "options", "run", "statuses", "grid", "axes", "device", "errors", "methods"]),
+                     ["solving.solve", "solving.options", "results.run", "base.statuses", "sweeps.sweep",
+                      "symbolic.axes", "results.gpu_results", "base.errors", "models.methods"]),
     "python_model": ("Python: models", "Equations, events and hooks, and the symbols and functions in them.",
-                     ["model", "trigger", "symbols", "expression", "interpolate", "table", "tangents", "cpp_model",
-                      "sbml", "units", "xpp"]),
+                     ["codegen.model", "models.event", "models.trigger", "symbolic.symbols", "symbolic.expression",
+                      "symbolic.interpolate", "symbolic.table", "models.tangents", "results.exponents",
+                      "models.cpp_model", "formats.sbml.model", "models.units", "formats.xpp.model"]),
     "python_fit": ("Python: sensitivities and fits", "Derivatives of results, and what is fitted to data by them.",
-                   ["sensitivities", "function", "least_squares", "fit", "profile", "petab", "designs"]),
+                   ["models.sensitivities", "results.sensitivities", "gradients.batched", "inference.least_squares",
+                    "inference.fitting", "inference.profile", "formats.petab.problem", "inference.designs"]),
     "python_study": ("Python: studies", "Studies, reductions, and results on disk.",
-                     ["study", "study_result", "reduce"]),
+                     ["studies.study", "studies.result", "studies.reduce"]),
     "python_tools": ("Python: pictures and the cache", "`myriad.plots`, `run.plot`, and `myriad.cache`.",
-                     ["plots", "run_plots", "cache"]),
+                     ["base.plots", "results.run_plots", "kernels.cache"]),
 }
 # Classes that public functions return, whose members users call though they do not make them.
-RETURNED = {"run": ["Report"], "grid": ["Sweep"], "axes": ["Axis"], "table": ["Table"], "reduce": ["Reduction"],
-            "tangents": ["WithTangents"], "run_plots": ["Plots"], "profile": ["Profile"],
-            "designs": ["Design", "Indices"],
-            "device": ["DeviceArray", "DeviceResults"], "expression": ["Expression", "Condition"]}
+RETURNED = {"results.run": ["Report"], "sweeps.sweep": ["Sweep"], "symbolic.axes": ["Axis"],
+            "symbolic.table": ["Table"], "studies.reduce": ["Reduction"], "models.tangents": ["WithTangents"],
+            "results.run_plots": ["Plots"], "inference.profile": ["Profile"],
+            "inference.designs": ["Design", "Indices"], "results.gpu_results": ["DeviceArray", "DeviceResults"],
+            "symbolic.expression": ["Expression", "Condition"]}
 
 
 class Entity:
@@ -80,8 +84,8 @@ def description_of_value(node, lines):
 class Module:
     """The definitions of a file."""
 
-    def __init__(self, file):
-        self.name = file.stem
+    def __init__(self, name, file):
+        self.name, self.path = name, name.replace(".", "/") + ".py"
         text = file.read_text(encoding="utf-8")
         self.tree, self.lines = ast.parse(text), text.splitlines()
         self.all, self.found = [], {}
@@ -117,26 +121,39 @@ class Module:
                             isinstance(e.node, ast.FunctionDef) and e.text]
 
 
+def add_inherited(modules):
+    """Gives `Model` the members of the record that it is made of."""
+    model, recorded = modules["codegen.model"].found["Model"], modules["models.recorded"].found["RecordedModel"]
+    own = {member.name for member in model.members}
+    model.members += [member for member in recorded.members if member.name not in own]
+
+
 def read(source):
     """All public entities: (page, name as users write it, entity)."""
-    modules = {f.stem: Module(f) for f in sorted((source / PACKAGE).glob("*.py"))}
+    files = {".".join(f.relative_to(source / PACKAGE).with_suffix("").parts): f
+             for f in sorted((source / PACKAGE).rglob("*.py"))}
+    modules = {name: Module(name, f) for name, f in files.items()}
+    add_inherited(modules)
     package = modules["__init__"]
     public = next(n.value for n in package.tree.body if "_public" in assigned_names(n))
     names = [e.value for e in public.elts if isinstance(e, ast.Constant)]
     comprehension = next(e.value for e in public.elts if isinstance(e, ast.Starred))
     names += [n for part in ast.literal_eval(comprehension.generators[0].iter) for n in modules[part].all]
-    imported = {}
+    imported, public_modules = {}, {}
     for node in package.tree.body:
         if isinstance(node, ast.ImportFrom) and node.level == 1:
             for alias in node.names:
                 if alias.name == "*":
                     imported.update((n, node.module) for n in modules[node.module].all)
+                elif f"{node.module}.{alias.name}" in modules:
+                    public_modules[alias.name] = f"{node.module}.{alias.name}"
                 else:
                     imported[alias.asname or alias.name] = node.module
     found, problems = [], []
     for name in names:
-        if imported.get(name) is None and name in modules:
-            found += [(f"myriad.{name}.{n}", modules[name].found[n]) for n in modules[name].public()]
+        if name in public_modules:
+            module = modules[public_modules[name]]
+            found += [(f"myriad.{name}.{n}", module.found[n]) for n in module.public()]
         elif name in imported and name in modules[imported[name]].found:
             found.append((f"myriad.{name}", modules[imported[name]].found[name]))
         else:
@@ -148,7 +165,7 @@ def read(source):
     for name, entity in found:
         page = next((p for p, (_, _, of) in PAGES.items() if entity.module.name in of), None)
         if page is None:
-            problems.append(f"{PACKAGE}/{entity.module.name}.py: {name} is on no page of scripts/python_reference.py")
+            problems.append(f"{PACKAGE}/{entity.module.path}: {name} is on no page of scripts/python_reference.py")
         placed.append((page, name, entity))
     return modules, placed, problems
 
@@ -175,7 +192,7 @@ def check(placed, problems):
         inner = [(f"{name}.{m.name}", m, True) for m in entity.members]
         for full, one, is_member in [(name, entity, False), *inner]:
             count += 1
-            where = f"{PACKAGE}/{one.module.name}.py:{one.node.lineno}: {full}"
+            where = f"{PACKAGE}/{one.module.path}:{one.node.lineno}: {full}"
             if not one.text:
                 problems.append(f"{where} has no description")
             for what in untyped(one, is_member):
@@ -184,7 +201,7 @@ def check(placed, problems):
             if isinstance(entity.node, ast.ClassDef) and getattr(part, "name", "") == "__init__":
                 for what in untyped(Entity("__init__", part, entity.module, ""), True):
                     if what != "what it returns":
-                        problems.append(f"{PACKAGE}/{entity.module.name}.py:{part.lineno}: {name}: {what} has no type")
+                        problems.append(f"{PACKAGE}/{entity.module.path}:{part.lineno}: {name}: {what} has no type")
     print("\n".join([*problems, f"{count} public names of the Python package"]))
     return 1 if problems else 0
 
@@ -242,8 +259,8 @@ def write(folder, modules, placed):
     for page, (title, about, _) in PAGES.items():
         out = [f"# {title}", about]
         here = [(n, e) for p, n, e in placed if p == page]
-        out += [f"`{m}`: {modules[m.rpartition('.')[2]].text}" for m in sorted(
-            {n.rpartition(".")[0] for n, _ in here if n.count(".") == 2})]
+        out += [f"`{m}`: {text}" for m, text in sorted(
+            {n.rpartition(".")[0]: e.module.text for n, e in here if n.count(".") == 2}.items())]
         out += [entry(n, e) for n, e in here]
         (folder / f"{page}.md").write_text("\n\n".join(out) + "\n", encoding="utf-8")
 

@@ -27,11 +27,12 @@ from pathlib import Path
 import numpy as np
 
 import myriad as my
-from myriad import kinds, nvrtc
-from myriad.errors import CannotInterpret
-from myriad.methods import method_type
-from myriad.per_phase import prepared
-from myriad.sbml_math import Refused
+from myriad.base import component_kinds as kinds
+from myriad.kernels import nvrtc
+from myriad.base.errors import CannotInterpret
+from myriad.models.methods import method_type
+from myriad.models.once_per_phase import prepared
+from myriad.formats.sbml.math import Refused
 
 outcomes = ("right", "refused", "wrong", "failed")
 

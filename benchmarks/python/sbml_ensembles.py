@@ -26,7 +26,7 @@ from pathlib import Path
 import numpy as np
 
 import myriad as my
-from myriad.sbml_document import read
+from myriad.formats.sbml.document import read
 
 
 def swept(model):

@@ -430,7 +430,7 @@ NB_MODULE(_core, m) {
             try {
                 std::rethrow_exception(thrown);
             } catch (const error& e) {
-                const nb::object said = nb::module_::import_("myriad.statements").attr("in_python")(e.said());
+                const nb::object said = nb::module_::import_("myriad.base.core_words").attr("in_python")(e.said());
                 PyErr_SetObject(said.type().ptr(), said.ptr());
             }
         },

@@ -19,10 +19,11 @@ if os.environ.get("MYRIAD_TEST_DEVICE") != "cuda":  # as in the tests of the C++
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 import myriad as my  # noqa: E402
+from myriad.kernels import compiler  # noqa: E402
 
 # Kernels of tests are compiled in about half of the time, with the same results, in the whole session.
 _quick = "-DMYRIAD_OUT_OF_LINE"
-_compiler = my.compiler.find_compiler()
+_compiler = compiler.find_compiler()
 _command = () if _compiler is None else tuple(word for word in _compiler.command if word != _quick)
 if _command:
     os.environ["MYRIAD_CXX"] = shlex.join((*_command, _quick))

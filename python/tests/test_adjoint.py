@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import myriad as my
-from myriad import adjoint
+from myriad.gradients import adjoint
 
 x, y = my.states("x y")
 a, b, c = my.parameters("a b c")

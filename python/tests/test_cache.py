@@ -13,7 +13,7 @@ import time
 import pytest
 
 import myriad as my
-from myriad import cache, compiler
+from myriad.kernels import cache, compiled_files, compiler
 
 from conftest import OSCILLATOR
 
@@ -49,7 +49,7 @@ def test_a_second_process_finds_the_kernel(tmp_path):
 
 
 def obtain(made_from, make, load):
-    return cache.obtain(made_from.encode(), make, load)
+    return compiled_files.obtain(made_from.encode(), make, load)
 
 
 def file_of(made_from):
@@ -134,8 +134,9 @@ def test_a_folder_that_cannot_be_made(tmp_path, monkeypatch):
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path / "file" / "cache"))
     found = obtain("f", _writer("made"), read)
-    assert found == cache.Obtained("made", False, f"compiled models are not kept in {tmp_path}/file/cache, as it "
-                                   "cannot be used (Not a directory): set MYRIAD_CACHE_DIR to a folder that can")
+    assert found == compiled_files.Obtained(
+        "made", False, f"compiled models are not kept in {tmp_path}/file/cache, as it cannot be used (Not a "
+                       "directory): set MYRIAD_CACHE_DIR to a folder that can")
     assert obtain("f", _writer("again"), read).hit
     told, _, _ = run_script(MYRIAD_CACHE_DIR=str(tmp_path / "file" / "cache"))
     assert told.startswith("compiled by") and f"not kept in {tmp_path}/file/cache" in told
@@ -147,8 +148,8 @@ def test_a_damaged_entry_is_made_again(tmp_path, monkeypatch):
     file = tmp_path / file_of("g")
     for damaged in (b"", file.read_bytes()[:10], b"X" + file.read_bytes()[1:]):
         file.write_bytes(damaged)
-        assert obtain("g", _writer("new"), read) == cache.Obtained("new", False)
-        assert obtain("g", _writer("never made"), read) == cache.Obtained("new", True)
+        assert obtain("g", _writer("new"), read) == compiled_files.Obtained("new", False)
+        assert obtain("g", _writer("never made"), read) == compiled_files.Obtained("new", True)
 
 
 def test_what_cannot_be_loaded_is_not_kept(tmp_path, monkeypatch):
@@ -165,13 +166,13 @@ def test_what_cannot_be_loaded_is_not_kept(tmp_path, monkeypatch):
     def refuse_old(path):
         return refuse(path) if read(path) == "old" else read(path)
 
-    assert obtain("h", _writer("new"), refuse_old) == cache.Obtained("new", False)
+    assert obtain("h", _writer("new"), refuse_old) == compiled_files.Obtained("new", False)
 
 
 def test_a_lock_that_cannot_be_opened(tmp_path, monkeypatch):
     monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path))
     (tmp_path / file_of("j")).with_suffix(".lock").symlink_to(tmp_path / "nowhere" / "else")  # which stops root too
-    assert obtain("j", _writer("made"), read) == cache.Obtained("made", False)  # others may make the same
+    assert obtain("j", _writer("made"), read) == compiled_files.Obtained("made", False)  # others may make the same
     assert obtain("j", _writer("never made"), read).hit
 
 
@@ -221,7 +222,7 @@ def test_a_file_of_the_cache_that_may_be_somebody_elses_is_made_again(tmp_path, 
     for plant in (opened_to_others, linked, pipe):
         obtain("n", _writer("planted"), read)
         plant()
-        assert obtain("n", _writer("own"), read) == cache.Obtained("own", False), plant.__name__
+        assert obtain("n", _writer("own"), read) == compiled_files.Obtained("own", False), plant.__name__
         assert file.is_file() and not file.is_symlink() and file.stat().st_mode & 0o777 == 0o600
         file.unlink()
 
@@ -232,7 +233,7 @@ def test_what_belongs_to_another_user_is_refused(tmp_path, monkeypatch):
     monkeypatch.setenv("MYRIAD_CACHE_DIR", str(folder))
     obtain("o", _writer("planted"), read)
     os.chown(folder / file_of("o"), 12345, -1)
-    assert obtain("o", _writer("own"), read) == cache.Obtained("own", False)
+    assert obtain("o", _writer("own"), read) == compiled_files.Obtained("own", False)
     os.chown(folder, 12345, -1)
     _refused("it belongs to another user, of number 12345", "o1")
     os.chown(folder, 0, -1)
@@ -244,8 +245,8 @@ def test_what_belongs_to_another_user_is_refused(tmp_path, monkeypatch):
 
 def test_a_killed_compilation_leaves_nothing_after_the_next_one(tmp_path, monkeypatch):
     monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path))
-    script = ("import os, signal; from myriad import cache\n"
-              "cache.obtain(b'p', lambda folder: os.kill(os.getpid(), signal.SIGKILL), print)")
+    script = ("import os, signal; from myriad.kernels import compiled_files\n"
+              "compiled_files.obtain(b'p', lambda folder: os.kill(os.getpid(), signal.SIGKILL), print)")
     own = file_of("p").removesuffix(".so")
     for key in ("p", "q"):  # the same model, and another one
         subprocess.run([sys.executable, "-c", script], check=False)
@@ -263,7 +264,7 @@ def test_a_place_of_a_living_process_stays(tmp_path, monkeypatch):
         assert os.path.isdir(workplace) and (tmp_path / file_of("outer")).with_suffix(".lock").exists()
         _writer("made")(workplace)
 
-    assert obtain("outer", make, read) == cache.Obtained("made", False)
+    assert obtain("outer", make, read) == compiled_files.Obtained("made", False)
     assert {p.name for p in tmp_path.iterdir()} == {file_of("inner"), file_of("outer")}
 
 
@@ -272,7 +273,7 @@ def test_a_file_that_was_made_from_another_text_is_not_loaded(tmp_path, monkeypa
     monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path))
     obtain("r", _writer("of r"), read)
     (tmp_path / file_of("r")).rename(tmp_path / file_of("s"))
-    assert obtain("s", _writer("of s"), read) == cache.Obtained("of s", False)
+    assert obtain("s", _writer("of s"), read) == compiled_files.Obtained("of s", False)
 
 
 def test_ctrl_c_ends_a_compilation(tmp_path):
@@ -388,8 +389,8 @@ def test_a_library_without_the_symbol_does_not_poison_the_process(tmp_path, monk
 
     for _ in range(3):
         with pytest.raises(my.Error, match="another compiled model for the one that was asked for"):
-            cache.obtain(made_from, make_empty, lambda path: compiler._load(by, path, made_from))
-    found = cache.obtain(made_from, lambda folder: by.compile(source, folder),
+            compiled_files.obtain(made_from, make_empty, lambda path: compiler._load(by, path, made_from))
+    found = compiled_files.obtain(made_from, lambda folder: by.compile(source, folder),
                          lambda path: compiler._load(by, path, made_from))
     assert found.loaded.instruction_set
 
@@ -405,7 +406,7 @@ def test_a_program_that_ignores_sigchld_compiles(tmp_path):
 
 def test_a_model_that_does_not_compile_is_refused_where_sigchld_is_ignored(tmp_path):
     script = ("import signal; signal.signal(signal.SIGCHLD, signal.SIG_IGN)\n"
-              "from myriad import compiler\n"
+              "from myriad.kernels import compiler\n"
               "by = compiler.compiler()\n"
               f"by.compile('int nothing = nobody;', {str(tmp_path)!r})")
     told = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
@@ -437,7 +438,7 @@ def test_a_forked_child_keeps_no_lock(tmp_path, monkeypatch):
 
 def test_a_forked_child_keeps_no_lock_of_a_process_that_was_killed(tmp_path, monkeypatch):
     monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path))
-    script = ("import os, signal, time; from myriad import cache\n"
+    script = ("import os, signal, time; from myriad.kernels import compiled_files\n"
               "def make(folder):\n"
               "    if os.fork() == 0:\n"
               "        print(os.getpid(), flush=True)\n"
@@ -446,7 +447,7 @@ def test_a_forked_child_keeps_no_lock_of_a_process_that_was_killed(tmp_path, mon
               "        os._exit(0)\n"
               "    time.sleep(0.1)\n"
               "    os.kill(os.getpid(), signal.SIGKILL)\n"
-              "cache.obtain(b'v', make, print)")
+              "compiled_files.obtain(b'v', make, print)")
     child = int(subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False).stdout)
     try:
         begin = time.monotonic()
@@ -481,9 +482,9 @@ def test_models_are_compiled_elsewhere_where_the_disk_of_the_cache_is_full(tmp_p
 
 
 def test_without_a_home_and_a_temporary_folder_nothing_is_written_to_the_current_one(tmp_path):
-    script = ("from myriad import cache; import pathlib\n"
+    script = ("from myriad.kernels import compiled_files; import pathlib\n"
               "make = lambda folder: pathlib.Path(folder, 'model.so').write_text('made')\n"
-              "print(cache.obtain(b'w', make, len).unusable)")
+              "print(compiled_files.obtain(b'w', make, len).unusable)")
     environment = {name: value for name, value in os.environ.items()
                    if name not in ("HOME", "XDG_CACHE_HOME", "MYRIAD_CACHE_DIR")}
     told = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False, cwd=tmp_path,

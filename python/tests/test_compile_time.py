@@ -13,8 +13,8 @@ import pytest
 
 import example_models
 import myriad as my
-from myriad import compiler, nvrtc
-from myriad.cpp import work
+from myriad.kernels import compiler, nvrtc
+from myriad.symbolic.operations import cost
 from test_gpu import network
 
 pytestmark = [pytest.mark.long, pytest.mark.as_users_compile]
@@ -56,14 +56,15 @@ def test_the_first_result_comes_in_a_second_or_two(unit, tmp_path, monkeypatch, 
     monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path / "cache"))
     if is_prepared:
         my.cache.prepare()
-    program = FIRST if is_prepared else f"from myriad import compiler\ncompiler._prepare = lambda by: None\n{FIRST}"
+    unprepared = f"from myriad.kernels import compiler\ncompiler._prepare = lambda by: None\n{FIRST}"
+    program = FIRST if is_prepared else unprepared
     assert seconds_of([sys.executable, "-c", program], stdout=subprocess.DEVNULL) < most * unit
 
 
 NETWORK = """
 import sys
 import myriad as my
-from myriad import nvrtc
+from myriad.kernels import nvrtc
 n = int(sys.argv[1])
 y, mu = my.states([f"y{i}" for i in range(n)]), my.parameter("mu")
 ring = my.model({**{y[i]: y[i + 1] for i in range(0, n, 2)},
@@ -106,7 +107,7 @@ def test_large_right_hand_sides_are_called_and_small_ones_copied():
     assert "large_rhs = true" in network().cpp()
     assert [make.__name__ for make in example_models.headers if "large_rhs" in make().cpp()] == []
     x, y = my.states("x y")
-    assert work([x * y + my.sin(x), my.sin(x) - 1]) == 18  # shared subexpressions once
+    assert cost([x * y + my.sin(x), my.sin(x) - 1]) == 18  # shared subexpressions once
     chain = my.states([f"c{i}" for i in range(100)])
     rows = {c: before - c * c * c for before, c in zip(np.roll(np.array(chain), 1), chain)}
     assert "large_rhs" in my.model(rows).cpp()

@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 import myriad as my
-from myriad.derivatives import _partials as derivative_rules
-from myriad.derivatives import dependencies, derivatives, directional, transposed
-from myriad.expression import constant, evaluate
+from myriad.symbolic.derivatives import dependencies, derivatives, directional, transposed
+from myriad.symbolic.evaluate import evaluate
+from myriad.symbolic.expression import constant
+from myriad.symbolic.operations import operations
 
 x, y, z = my.states("x y z")
 k = my.parameter("k")
@@ -113,7 +114,7 @@ def test_steps_have_no_derivatives_and_linear_terms_constant_ones():
 
 
 def test_an_operation_without_a_rule_leaves_the_pattern(monkeypatch):
-    monkeypatch.delitem(derivative_rules, "sin")
+    monkeypatch.delitem(operations, "sin")
     assert derivatives([my.sin(x) * y, z], [x, y, z]) is None
     assert transposed([my.sin(x) * y], [z], [x]) is None and directional([my.sin(x) * y], [x], [z]) is None
     assert dependencies([my.sin(x) * y, z], [x, y, z]) == [[0, 1], [2]]

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import myriad as my
-from myriad import _core, statements
+from myriad import _core
+from myriad.base import core_words
 
 CALL = dict(sweep={"w": [1.0, 2.0]}, start={"x": 1, "v": 0}, time=(0, 1))
 
@@ -79,31 +80,31 @@ def test_message(oscillator, change, message):
 
 def said_in_cpp(*parts):
     """A statement of the core: (kind, key, number), or a text that is the same everywhere. C++ says "@"."""
-    return [(statements._text, p, "", -1) if isinstance(p, str) else (p[0], "@", *p[1:], *[-1] * (3 - len(p)))
+    return [(core_words._text, p, "", -1) if isinstance(p, str) else (p[0], "@", *p[1:], *[-1] * (3 - len(p)))
             for p in parts]
 
 
 @pytest.mark.parametrize("parts, message", [
-    ([(statements._option, "relative_tolerance"), " and ", (statements._option, "absolute_tolerance"), " are 0"],
+    ([(core_words._option, "relative_tolerance"), " and ", (core_words._option, "absolute_tolerance"), " are 0"],
      "rtol and atol are 0"),
-    ([(statements._option, "options.relative_tolerance"), ": 1 here"], "options.rtol: 1 here"),
-    ([(statements._option, "samples.times"), " is 1"], "samples times is 1"),
-    ([(statements._option, "ensemble"), " has 0 instances"], "the sweep has 0 instances"),
-    (["of ", (statements._event, "", 1)], "of event 'bottom'"),
-    ([(statements._component, "state", 0), ": ", (statements._cure, "set_value")], "@: give it in start="),
-    ([(statements._component, "parameter", 0), ": ", (statements._cure, "set_value")], "@: give it in the sweep"),
-    ([(statements._cure, "fewer_instances", 30)], "integrate the sweep in parts of at most 30 instances"),
-    ([(statements._cure, "fewer_instances")], "integrate the sweep in smaller parts"),
-    ([(statements._cure, "use_doubles")], 'give precision="double"'),
+    ([(core_words._option, "options.relative_tolerance"), ": 1 here"], "options.rtol: 1 here"),
+    ([(core_words._option, "samples.times"), " is 1"], "samples times is 1"),
+    ([(core_words._option, "ensemble"), " has 0 instances"], "the sweep has 0 instances"),
+    (["of ", (core_words._event, "", 1)], "of event 'bottom'"),
+    ([(core_words._component, "state", 0), ": ", (core_words._cure, "set_value")], "@: give it in start="),
+    ([(core_words._component, "parameter", 0), ": ", (core_words._cure, "set_value")], "@: give it in the sweep"),
+    ([(core_words._cure, "fewer_instances", 30)], "integrate the sweep in parts of at most 30 instances"),
+    ([(core_words._cure, "fewer_instances")], "integrate the sweep in smaller parts"),
+    ([(core_words._cure, "use_doubles")], 'give precision="double"'),
 ])
 def test_what_the_core_says_is_told_by_its_keys_and_not_by_its_words(parts, message):
-    assert statements.in_words(said_in_cpp(*parts), ["top", "bottom"]) == message
+    assert core_words.in_words(said_in_cpp(*parts), ["top", "bottom"]) == message
 
 
 def test_every_cure_of_the_core_has_words_in_python():
-    assert set(statements._cures) == set(_core.cures())
-    for name in statements._cures:
-        words = statements.in_words([(statements._cure, "@", name, -1)])
+    assert set(core_words._cures) == set(_core.cures())
+    for name in core_words._cures:
+        words = core_words.in_words([(core_words._cure, "@", name, -1)])
         assert not any(piece in words for piece in ("@", "::", "{", "ensemble")), words
 
 

@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 
 import myriad as my
+from myriad.studies import executed_run
 
 x, v = my.states("x v")
 k = my.parameter("k")
@@ -115,7 +116,7 @@ if __name__ == "__main__":
 
 
 def test_a_worker_takes_the_devices_of_each_run(monkeypatch):
-    class_of_studies, used = my.study.__globals__["Study"], []
+    class_of_studies, used = my.Study, []
     use = class_of_studies._use
     monkeypatch.setattr(class_of_studies, "_use", lambda study, devices, chunk: (
         used.append((threading.current_thread() is threading.main_thread(), devices)), use(study, devices, chunk)))
@@ -150,7 +151,7 @@ class LossyExecutor(concurrent.futures.Executor):
 
 
 def test_an_executor_that_cannot_cancel_still_tells_of_a_lost_worker(tmp_path, monkeypatch):
-    monkeypatch.setattr(my.study.__globals__["_ExecutedRun"], "_patience", 0.1)
+    monkeypatch.setattr(executed_run.ExecutedRun, "_patience", 0.1)
     with pytest.raises(my.Error, match="lost with its worker .WorkerLost: worker 0.; what was done is kept") as raised:
         oscillator().run(tmp_path / "store", executor=LossyExecutor(), chunk=10)
     assert raised.value.result.done == 10

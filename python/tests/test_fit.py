@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import myriad as my
-from myriad.least_squares import LeastSquares
-from myriad.student import student_quantile
+from myriad.inference.least_squares import LeastSquares
+from myriad.inference.student_t import student_quantile
 
 x, w = my.states("x w")
 k, a, B, unused = my.parameters("k a B unused")
@@ -268,7 +268,7 @@ def test_ctrl_c_in_a_fit_keeps_the_best_point(monkeypatch):
         return result
 
     monkeypatch.setattr(LeastSquares, "evaluate", interrupted)
-    given = {"free": free, "interpreted": True, **usual}
+    given = {"free": free, **usual}
     with pytest.raises(my.Interrupted, match=r"the least loss so far is .*; \.fit has its values") as raised:
         my.fit(model, measured(), starts=5, **given)
     fit = raised.value.fit

@@ -14,8 +14,9 @@ import pytest
 
 import example_models
 import myriad as my
-from myriad import _core, nvrtc
-from myriad.methods import fixed_step, methods
+from myriad import _core
+from myriad.kernels import nvrtc
+from myriad.models.methods import fixed_step, methods
 
 pytestmark = pytest.mark.skipif(os.environ.get("MYRIAD_TEST_DEVICE") != "cuda" or bool(_core.no_gpu()),
                                 reason="MYRIAD_TEST_DEVICE is not cuda, or there is no GPU")

@@ -11,7 +11,7 @@ import pytest
 
 import myriad
 from myriad import _core
-from myriad.methods import default
+from myriad.models.methods import default
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 FOLDER = pathlib.Path(myriad.__file__).parent
@@ -49,11 +49,12 @@ def checked(source):
 
 
 @pytest.mark.parametrize("file, before, after, said", [
-    ("solve.py", r'(?s)"""Integrates a model.*?"""', '""""""', "myriad.solve has no description"),
-    ("grid.py", "def values\\(self, name: str\\)", "def values(self, name)", "Sweep.values: name has no type"),
-    ("run.py", r"def size\(self\) -> int", "def size(self)", "Run.size: what it returns has no type"),
-    ("symbols.py", r"  #: the time; in an action.*", "", "myriad.time has no description"),
-    ("axes.py", r'__all__ = \["linspace",', '__all__ = ["missing", "linspace",', "missing is public and defined"),
+    ("solving/solve.py", r'(?s)"""Integrates a model.*?"""', '""""""', "myriad.solve has no description"),
+    ("sweeps/sweep.py", "def values\\(self, name: str\\)", "def values(self, name)", "Sweep.values: name has no type"),
+    ("results/run.py", r"def size\(self\) -> int", "def size(self)", "Run.size: what it returns has no type"),
+    ("symbolic/symbols.py", r"  #: the time; in an action.*", "", "myriad.time has no description"),
+    ("symbolic/axes.py", r'__all__ = \["linspace",', '__all__ = ["missing", "linspace",',
+     "missing is public and defined"),
 ])
 def test_what_has_no_description_or_type_is_found(tmp_path, file, before, after, said):
     assert checked(ROOT).returncode == 0

@@ -24,7 +24,7 @@ def study(sweep, **options):
     return my.study(oscillator, sweep, **{**dict(start={x: 1, v: 0}, time=(0, 1)), **options})
 
 
-def test_of_two_values_for_a_component_the_last_one_counts():
+def test_two_values_for_a_component_are_refused():
     with pytest.raises(my.Error, match="'k' is given twice in the sweep: give it once"):
         solve({k: 1, "k": 2})
     with pytest.raises(my.Error, match="'x' is given twice in start=: give it once"):
@@ -33,7 +33,7 @@ def test_of_two_values_for_a_component_the_last_one_counts():
         solve(rtol={x: 1e-3, "x": 1e-6})
 
 
-def test_of_two_values_for_a_component_of_a_study_the_last_one_counts():
+def test_two_values_for_a_component_of_a_study_are_refused():
     with pytest.raises(my.Error, match="'k' is given twice in the sweep: give it once"):
         study({k: [1, 2], "k": 2})
     with pytest.raises(my.Error, match="'x' is given in the sweep and in start=: give it once"):
@@ -44,13 +44,13 @@ def test_of_two_values_for_a_component_of_a_study_the_last_one_counts():
         study({k: 1, my.t_end: [1, 2]})
 
 
-def test_a_grid_of_more_than_all_numbers_has_no_instances():
+def test_a_grid_with_more_instances_than_numbers_is_refused():
     axis = np.zeros(1 << 16)  # four of them have 2^64 combinations, which is 0 in 64 bits
     with pytest.raises(my.Error, match="the sweep has 18446744073709551616 instances"):
         my.grid(k=axis, x=axis, v=axis, w=axis)
 
 
-def test_values_of_the_wrong_kind_end_in_an_error_of_python_or_numpy():
+def test_values_of_the_wrong_kind_are_refused_in_words_of_the_package():
     with pytest.raises(my.Error, match=r"\[\[1\], \[1, 2\]\] is no array"):
         solve({k: [[1], [1, 2]]})
     for device in (None, 0, [1]):
@@ -62,7 +62,7 @@ def test_values_of_the_wrong_kind_end_in_an_error_of_python_or_numpy():
         my.solve(type(oscillator), {k: 1})
 
 
-def test_messages_name_functions_of_the_cpp_library():
+def test_messages_name_arguments_of_python():
     with pytest.raises(my.Error, match="give it in the sweep$"):
         solve({k: np.nan})
     with pytest.raises(my.Error, match="give it in start=$"):
@@ -73,7 +73,7 @@ def test_messages_name_functions_of_the_cpp_library():
         solve(tolerance_scale=[1])
 
 
-def test_a_copied_report_ends_in_endless_recursion():
+def test_a_report_is_not_copied_and_says_so():
     report = solve().report
     for attempt in (copy.copy, copy.deepcopy, pickle.dumps):
         with pytest.raises(my.Error, match="a report cannot be pickled or copied: keep str"):
@@ -81,7 +81,7 @@ def test_a_copied_report_ends_in_endless_recursion():
     assert not hasattr(report, "nonsense")
 
 
-def test_the_least_whole_number_of_32_bits_is_refused():
+def test_whole_numbers_may_be_all_those_of_32_bits():
     n = my.shared_integer("n")
     model = my.model({x: my.where(n < 0, 1.0, 0.0)})
     for value, slope in ((-(1 << 31), 1), ((1 << 31) - 1, 0)):
@@ -92,7 +92,7 @@ def test_the_least_whole_number_of_32_bits_is_refused():
             my.solve(model, {n: value}, start={x: 0}, time=(0, 1), device="cpu", interpreted=True)
 
 
-def test_tables_of_uneven_lists_end_in_an_error_of_numpy():
+def test_tables_of_uneven_lists_are_refused_in_words_of_the_package():
     with pytest.raises(my.Error, match=r"\[\[1\], \[1, 2\]\] is no array"):
         my.table("W", [[1], [1, 2]])
     with pytest.raises(my.Error, match="an interpolation"):
@@ -102,7 +102,7 @@ def test_tables_of_uneven_lists_end_in_an_error_of_numpy():
     assert my.table("W", [fractions.Fraction(1, 4)]).values[0] == 0.25
 
 
-def test_text_is_taken_for_a_number_where_an_option_is_one():
+def test_text_is_no_number_for_an_option():
     for name in ("step", "minimum_step", "maximum_step", "growth_limit", "time_limit", "phase_length"):
         for value in ("2", b"2", bytearray(b"2"), True):
             with pytest.raises(my.Error, match=f"^{name} is .*: give a number$"):
@@ -111,13 +111,13 @@ def test_text_is_taken_for_a_number_where_an_option_is_one():
             solve(**{name: value})
 
 
-def test_a_step_of_nan_is_taken_for_none():
+def test_a_step_of_nan_is_refused():
     with pytest.raises(my.Error, match="^step is nan: give a number, or leave it out$"):
         solve(step=np.nan)
     assert solve(step=None)["x"][0] == solve()["x"][0]
 
 
-def test_paths_of_the_wrong_kind_end_in_an_error_of_the_binding(tmp_path):
+def test_paths_of_the_wrong_kind_are_refused_and_bytes_are_paths(tmp_path):
     result = study({k: [1, 2]}).run()
     for use in (study({k: [1, 2]}).run, my.open_study, my.verify, result.to_csv, result.to_netcdf):
         for path, message in (("", "the path is empty"), (b"", "the path is empty"), (5, "the path is 5: give a text"),
@@ -130,7 +130,7 @@ def test_paths_of_the_wrong_kind_end_in_an_error_of_the_binding(tmp_path):
     assert my.verify(bytes(folder)) == [] and my.open_study(bytes(folder)).complete
 
 
-def test_a_netcdf_file_with_a_backslash_in_its_name_is_written_elsewhere(tmp_path):
+def test_a_netcdf_file_with_a_backslash_in_its_name_is_refused(tmp_path):
     pytest.importorskip("netCDF4")
     with pytest.raises(my.Error, match="has a backslash, which netCDF takes"):
         study({k: [1, 2]}).run().to_netcdf(tmp_path / "back\\slash.nc")

@@ -13,7 +13,8 @@ import pytest
 
 import example_models
 import myriad as my
-from myriad.expression import evaluate, walk
+from myriad.symbolic.evaluate import evaluate
+from myriad.symbolic.expression import walk
 
 x, v = my.states("x v")
 k, B = my.parameter("k"), my.shared("B")
@@ -366,8 +367,9 @@ def test_names_of_arguments_that_are_all_taken():
 
 
 def test_every_kind_of_component_has_names_in_every_model_and_a_symbol():
-    from myriad import kinds
+    from myriad.base import component_kinds as kinds
+    from myriad.models import any_model
     plurals = [kind.plural for kind in kinds.every.values()]
-    assert sorted(plurals) == sorted(kinds.ComponentNames.__annotations__)
+    assert sorted(plurals) == sorted(any_model.ComponentNames.__annotations__)
     assert set(plurals) <= set(inspect.signature(my.CppModel).parameters)
     assert all(getattr(my, kind)(f"one_{kind}").value == (kind, f"one_{kind}") for kind in kinds.valued)

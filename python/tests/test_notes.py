@@ -22,14 +22,14 @@ def follow(rate, interpreted=None, tolerance=1e-6, **options):
                     atol=tolerance, interpreted=interpreted, device="cpu", **options)
 
 
-def test_a_stiff_sweep_by_an_explicit_method_says_nothing_of_stiffness(interpreted):
+def test_a_stiff_sweep_by_an_explicit_method_has_a_note(interpreted):
     report = follow(1e4, interpreted).report
     note, = report.notes
     assert note.startswith("stability, not accuracy, limits the step in 40 of 40 instances") and "rodas_5p" in note
     assert f"note: {note}" in str(report)
 
 
-def test_advice_is_given_to_those_who_want_none(interpreted):
+def test_no_advice_is_given_to_those_who_want_none(interpreted):
     assert follow(1e4, interpreted, advice=False).report.notes == []
 
 
@@ -52,13 +52,13 @@ def test_a_note_has_the_names_of_python():
     assert str(report).count("is below what the precision can reach") == 1
 
 
-def test_a_study_says_nothing_of_stiffness():
+def test_a_stiff_study_has_a_note():
     model = my.model({x: k * (my.sin(my.time) - x) + my.cos(my.time)}, name="prothero_robinson")
     result = my.study(model, {k: np.full(40, 1e4)}, start={x: 0}, time=(0, 1), rtol=1e-6, atol=1e-6).run(device="cpu")
     assert any("rodas_5p" in note for note in result.notes)
 
 
-def test_long_phases_spoil_exponents_without_a_note():
+def test_phases_that_are_too_long_for_exponents_have_a_note():
     y, z = my.states("y z")
     lorenz = my.model({x: 10 * (y - x), y: x * (28 - z) - y, z: x * y - 8 / 3 * z}, name="lorenz")
 
@@ -70,7 +70,7 @@ def test_long_phases_spoil_exponents_without_a_note():
     assert notes(0.1) == []
 
 
-def test_an_event_tolerance_below_rounding_is_taken(interpreted):
+def test_an_event_tolerance_below_rounding_is_refused(interpreted):
     event = my.event(x - 1e6, name="summit", tolerance=1e-14)
     model = my.model({x: v, v: 0 * x - 1}, events=[event])
     with pytest.raises(my.Error, match="the tolerance of event 'summit' is 1e-14, but rounding changes its function"):

@@ -15,10 +15,11 @@ import pytest
 import example_models
 import myriad as my
 import test_cpp
-from myriad import _core, cache, nvrtc
-from myriad.adjoint import Adjoint
-from myriad.methods import method_type, methods
-from myriad.sensitivities import with_sensitivities
+from myriad import _core
+from myriad.kernels import compiled_files, nvrtc
+from myriad.gradients.adjoint import Adjoint
+from myriad.models.methods import method_type, methods
+from myriad.models.sensitivities import with_sensitivities
 
 pytestmark = [pytest.mark.long, pytest.mark.skipif(nvrtc.find() is None, reason="there is no NVRTC")]
 # Where there is a driver, NVRTC 13 takes what it compiled before from a cache, and then tells nothing of what it did
@@ -284,7 +285,8 @@ def test_a_kernel_that_generates_is_not_taken_for_one_that_does_not(monkeypatch)
     compiled = []
     monkeypatch.setattr(nvrtc, "_core", Core)
     monkeypatch.setattr(nvrtc, "_loaded", {})
-    monkeypatch.setattr(nvrtc, "_cached", lambda source, *_: compiled.append(source) or cache.Obtained(source, True))
+    monkeypatch.setattr(nvrtc, "_cached", lambda source, *_: (
+        compiled.append(source) or compiled_files.Obtained(source, True)))
     asked = ("struct decay {};", "decay", "myriad::cash_karp", "double", (0, 0), 0)
     for generates in (False, True, False, True):
         assert ("GENERATE" in nvrtc.kernel(*asked, generates).library) == generates

@@ -11,8 +11,10 @@ import sys
 import pytest
 
 import myriad as my
-from myriad import _core, core_options, option_names
-from myriad.components import Components
+from myriad import _core
+from myriad.base import option_names
+from myriad.solving import core_options
+from myriad.models.components import Components
 
 CALL = dict(sweep={"w": [1.0, 2.0]}, start={"x": 1, "v": 0}, time=(0, 1), device="cpu")
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts/options.py"

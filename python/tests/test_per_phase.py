@@ -8,8 +8,8 @@ pytest.importorskip("libsbml")
 
 import myriad as my  # noqa: E402
 from myriad import _core  # noqa: E402
-from myriad.cpp import work  # noqa: E402
-from myriad.per_phase import prepared  # noqa: E402
+from myriad.symbolic.operations import cost  # noqa: E402
+from myriad.models.once_per_phase import prepared  # noqa: E402
 from sbml_models import compartment, document, event, parameter, rate, reaction, species, variable  # noqa: E402
 
 _hill = [compartment("c", 2), species("S", concentration=3), species("P", concentration=0),
@@ -31,7 +31,7 @@ def test_powers_products_and_reciprocals_of_constants_are_no_part_of_the_equatio
     made = prepared(model)
     assert sorted(map(str, (value for _, value in made.initialise))) == [
         "1 / c", "c * Vmax * enzyme", "pow(K, n)"]
-    assert work(model.rhs) >= work(made.rhs) + 40  # the instructions of a power
+    assert cost(model.rhs) >= cost(made.rhs) + 40  # the instructions of a power
     assert prepared(model) is made
     assert "per_phase" not in model.cpp() and model.accessories == []
 
@@ -108,4 +108,4 @@ def test_divisions_stay_where_there_is_no_room_for_the_reciprocals():
     parts = [parameter(f"a{i}", 2) for i in range(count)] + [variable(f"x{i}", 1) for i in range(count)]
     model = my.read_sbml(document([*parts, *(rate(f"x{i}", f"-x{i} / a{i}") for i in range(count))]))
     made = prepared(model)
-    assert len(made.accessories) == count - 5 and work(made.rhs) == work(model.rhs)
+    assert len(made.accessories) == count - 5 and cost(made.rhs) == cost(model.rhs)

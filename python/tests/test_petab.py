@@ -290,7 +290,7 @@ def test_initial_values_and_parameters_that_follow_from_what_is_estimated_have_i
 
 
 def test_every_start_and_condition_is_an_instance_of_one_ensemble(several_conditions, monkeypatch):
-    from myriad import petab_likelihood
+    from myriad.formats.petab import likelihood as petab_likelihood
 
     sizes = []
     solve = petab_likelihood.solve

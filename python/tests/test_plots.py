@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import myriad as my
-from myriad import plots
-from myriad.run_plots import Plots
+from myriad.base import plots
+from myriad.results.run_plots import Plots
 
 matplotlib = pytest.importorskip("matplotlib")
 matplotlib.use("Agg")

@@ -8,7 +8,7 @@ import sys
 import pytest
 
 import myriad as my
-from myriad import cache, compiler
+from myriad.kernels import cache, compiler
 
 pytestmark = pytest.mark.long
 

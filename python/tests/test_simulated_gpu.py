@@ -69,8 +69,9 @@ def run(tmp_path_factory):
 def test_a_kernel_that_is_prepared_is_not_compiled_again(run, tmp_path):
     """As another process does for one that uses the GPU, and only loads."""
     run("""
-from myriad import kinds, nvrtc
-from myriad.methods import default, method_type
+from myriad.base import component_kinds as kinds
+from myriad.kernels import nvrtc
+from myriad.models.methods import default, method_type
 names = kinds.names_of(model)
 nvrtc.prepare(*model.source(), method_type(default), "double", tuple(len(names[kind]) for kind in kinds.shared), 0)
 assert solve("cuda", 3).report.kernel == "cache", solve("cuda", 3).report.kernel
@@ -209,7 +210,7 @@ with concurrent.futures.ThreadPoolExecutor(4) as pool:
 assert [r.report.device for r in several] == ["cuda:0", "cuda:1"] * 4
 assert all(np.array_equal(r["x"], solve("cuda", 100 + i)["x"]) for i, r in enumerate(several))
 assert solve("auto", 5, interpreted=True).report.device == "cpu"
-from myriad import nvrtc
+from myriad.kernels import nvrtc
 nvrtc.find = lambda: pathlib.Path("libnvrtc.so.14")
 assert "NVRTC of CUDA 14 compiles for newer drivers than this one, of CUDA 13" in message(
     lambda: solve("cuda", 5, precision="float"))
@@ -252,7 +253,7 @@ assert "names no device" in message(lambda: study(5).run(device=[]))
 
 def test_a_study_on_an_interpreter_and_a_gpu(run):
     run("""
-from myriad import compiler
+from myriad.kernels import compiler
 compiler.find_compiler = lambda: None
 linear = my.model({x: v, v: -k * x}, events=[my.event(v, direction="falling", do={n: n + 1})],
                   accessories={n: 0})
@@ -575,7 +576,7 @@ assert solve({device}, 50).report.by_status == {{"success": 50}}
 
 JAX = """
 import jax
-from myriad.jax_function import jax_function
+from myriad.gradients.jax_adapter import jax_function
 jax.config.update("jax_enable_x64", True)
 
 damping = my.parameter("damping")
@@ -605,17 +606,17 @@ def run_jax(run):
 
 def test_jax_programs_on_a_gpu_have_the_results_and_derivatives_of_the_host_in_one_call(run_jax):
     run_jax("""
-import myriad.function
+from myriad.gradients import batched
 there, here = on_gpu(), function("cpu").to_jax()
 for theta in sets, sets[0], np.stack([sets, sets]):
     found = there(theta)
     assert found.shape == (*theta.shape[:-1], 4, 2) and close(found, here(theta))
-sizes, usual = [], myriad.function.solve
-myriad.function.solve = lambda *a, **o: (sizes.append(1), usual(*a, **o))[1]
+sizes, usual = [], batched.solve
+batched.solve = lambda *a, **o: (sizes.append(1), usual(*a, **o))[1]
 gradients = jax.jit(jax.vmap(jax.grad(loss(there))))
 found = gradients(sets)
 assert len(sizes) == 1
-myriad.function.solve = usual
+batched.solve = usual
 assert close(found, jax.vmap(jax.grad(loss(here)))(sets))
 assert close(jax.grad(lambda all: jax.vmap(loss(there))(all).sum())(sets), found)
 assert close(jax.vmap(jax.vmap(there))(np.stack([sets, sets]))[1], here(sets))
@@ -693,7 +694,7 @@ assert np.isfinite(all["x"]).all() and np.array_equal(all["x"], on_host(all.devi
 
 
 ADJOINT = """
-from myriad import adjoint
+from myriad.gradients import adjoint
 x, y = my.states("x y")
 a, b, c = my.parameters("a b c")
 model = my.model({x: a * x - b * x * y, y: b * x * y - y + c * my.exp(-x * x)},

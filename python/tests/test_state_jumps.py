@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import myriad as my
-from myriad import state_jumps
+from myriad.models import state_jumps
 
 x, y, clock = my.states("x y clock")
 c, K = my.parameters("c K")

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 import myriad as my
+from myriad.studies import store_slices
 
 x, v = my.states("x v")
 k, B = my.parameter("k"), my.shared("B")
@@ -82,8 +83,8 @@ def test_netcdf_is_written_part_by_part(tmp_path, package, monkeypatch):
     module = pytest.importorskip(package)
     if package != "netCDF4":
         pytest.importorskip("h5py")
-    monkeypatch.setattr("myriad.study_result._netcdf_package", lambda: module.Dataset)
-    monkeypatch.setattr("myriad.study_result.blocks", lambda lengths, most: my.parts.blocks(lengths, 8))
+    monkeypatch.setattr("myriad.studies.result._netcdf_package", lambda: module.Dataset)
+    monkeypatch.setattr("myriad.studies.result.blocks", lambda lengths, most: store_slices.blocks(lengths, 8))
     result = my.study(duffing(), grid(), keep=[x], reduce=my.reduce.minimum("x"), **call).run(tmp_path / "store")
     result.to_netcdf(tmp_path / "study.nc")
     assert sorted(os.listdir(tmp_path)) == ["store", "study.nc"]
@@ -99,7 +100,7 @@ def test_blocks_cover_a_grid():
     for lengths in ((), (7,), (3, 5), (2, 3, 4), (1, 1)):
         for most in (1, 4, 100):
             seen = np.zeros(lengths, int)
-            for key in my.parts.blocks(lengths, most):
+            for key in store_slices.blocks(lengths, most):
                 seen[key] += 1
                 assert seen[key].size <= most
             assert (seen == 1).all()

@@ -10,7 +10,7 @@ import pytest
 
 import example_models
 import myriad as my
-from myriad.errors import CannotInterpret
+from myriad.base.errors import CannotInterpret
 
 
 def oscillator():

@@ -7,7 +7,7 @@ import pytest
 
 import myriad as my
 from myriad import where
-from myriad.unit_form import unit_form
+from myriad.codegen.unit_writer import unit_form
 
 x, clock = my.states("x clock")
 k, T = my.parameters("k T")

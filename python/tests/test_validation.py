@@ -15,7 +15,8 @@ import numpy as np
 import pytest
 
 import myriad as my
-from myriad import _core, tape
+from myriad import _core
+from myriad.codegen import tape_writer
 from validation_problems import heat, problems
 
 device = os.environ.get("MYRIAD_TEST_DEVICE", "cpu")
@@ -122,7 +123,7 @@ def test_a_gpu_agrees_with_the_cpu(name, method, solved):
 
 
 @pytest.mark.skipif(device != "cpu", reason="models are interpreted on the CPU")
-@pytest.mark.parametrize("method", tape.methods)
+@pytest.mark.parametrize("method", tape_writer.methods)
 @pytest.mark.parametrize("name", [name for name, problem in made.items() if name not in ("heat", "oregonator")])
 def test_interpreted(name, method):
     """The interpreter has explicit methods alone, with which the Oregonator, stiffer than Robertson's reaction, would

@@ -10,7 +10,8 @@
 
 namespace myriad::python {
 
-/// The records of steps, the samples that are taken of them, and what is computed; adjoint.py has the same members.
+/// The records of steps, the samples that are taken of them, and what is computed; gradients/adjoint.py has the same
+/// members.
 /// Arrays of records are [record][instance], `values` and `weights` [instance][sample][quantity], `gradient`
 /// [instance][state or chosen parameter].
 struct adjoint_call {

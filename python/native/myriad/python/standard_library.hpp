@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The part of the C++ standard library that kernels and models use, for NVRTC, which has none: it includes this file
-// for each of the library's headers (myriad/nvrtc.py).
+// for each of the library's headers (myriad/kernels/nvrtc.py).
 #pragma once
 
 using int8_t = signed char;

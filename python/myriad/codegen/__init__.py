@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Models as text: C++, the interpreter's tape, adjoints."""

@@ -1,0 +1,382 @@
+# SPDX-License-Identifier: MIT
+"""What SBML's elements mean: each id as an expression of states, parameters and time, and the equations of the states.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from typing import Any
+
+from ...symbolic import symbols as sym
+from ...symbolic.derivatives import derivatives
+from ...symbolic.folding import add, constant, divide, is_constant, multiply, number, subtract, total, value_of
+from .document import named
+from .math import Functions, Refused, Translator
+
+
+@dataclass
+class Quantity:
+    """Something with an id and a value: a compartment, species, parameter or stoichiometry."""
+
+    id: str
+    kind: str
+    element: Any
+    value: float | None  #: as the file has it
+    changes: str = ""  #: what changes it: "assignment", "rate", "reactions", "events"; empty if nothing does
+    formula: Any = None  #: of its rule
+    initial: Any = None  #: its initial assignment
+    compartment: str = ""  #: of a species whose id means a concentration
+    given_amount: bool = False  #: whether the value of such a species is its amount
+    in_amount: bool = False  #: whether such a species is stored as its amount
+    symbol: Any = None
+
+    @property
+    def where(self) -> str:
+        """The quantity in messages."""
+        return named(self.element)
+
+
+def _is_set(value: float) -> bool:
+    return not math.isnan(value)
+
+
+class Semantics:
+    """A model of libsbml's. `parameters` are the ids of those constants that a sweep may set; None: all."""
+
+    def __init__(self, libsbml: Any, document: Any, model: Any, parameters: list[str] | None) -> None:
+        self.libsbml, self.model, self.level = libsbml, model, document.getLevel()
+        self.swept = parameters
+        self.names: dict[str, str] = {}  # of components, by what they are for
+        self.functions = Functions(libsbml)
+        self.translate = Translator(self.functions, self.meaning, self.rate_of, sym.time)
+        self.translate.rate_of_expression = self.total_derivative
+        self.quantities: dict[str, Quantity] = {}
+        self.reactions: dict[str, Any] = {}
+        self.local_names: list[str] = []  # of parameters of kinetic laws
+        self._known: dict[Any, Any] = {}
+        self._under_way: list[Any] = []
+        self.defaults: dict[str, Any] = {}  # values of components at the start, as expressions
+        self._collect()
+        self._rules()
+        self._represent()
+
+    # -- Elements ------------------------------------------------------------------------------------------------------
+
+    def _all(self, kind: str) -> list[Any]:
+        return [getattr(self.model, f"get{kind}")(i) for i in range(getattr(self.model, f"getNum{kind}s")())]
+
+    def _add(self, quantity: Quantity) -> None:
+        if quantity.id in self.quantities or quantity.id in self.reactions:
+            raise Refused(f"{quantity.where} has the id of something else")
+        self.quantities[quantity.id] = quantity
+
+    def _collect(self) -> None:
+        for i in range(self.model.getNumFunctionDefinitions()):
+            definition = self.model.getFunctionDefinition(i)
+            self.functions.definitions[definition.getId()] = definition
+        for c in self._all("Compartment"):
+            given = c.getSize() if c.isSetSize() or self.level == 1 else None
+            self._add(Quantity(c.getId(), "compartment", c, given))
+        for p in self._all("Parameter"):
+            self._add(Quantity(p.getId(), "parameter", p, p.getValue() if p.isSetValue() else None))
+        for i in range(self.model.getNumSpecies()):
+            self._add(self._species(self.model.getSpecies(i)))
+        for r in self._all("Reaction"):
+            if r.isSetFast() and r.getFast():
+                raise Refused(f"{named(r)} is fast: such reactions are equations without derivatives, which Myriad "
+                              "does not solve")
+            self.reactions[r.getId()] = r
+            for reference in self.references(r):
+                name = reference.getIdAttribute()
+                if name:
+                    self._add(Quantity(name, "stoichiometry", reference, self._stoichiometry_given(reference)))
+
+    def _species(self, s: Any) -> Quantity:
+        compartment = self.model.getCompartment(s.getCompartment())
+        if compartment is None:
+            raise Refused(f"{named(s)} is in no compartment")
+        flat = compartment.getSpatialDimensionsAsDouble() == 0 and not compartment.isSetSize()
+        given = s.getInitialAmount() if s.isSetInitialAmount() else (
+            s.getInitialConcentration() if s.isSetInitialConcentration() else None)
+        as_amount = s.getHasOnlySubstanceUnits() or flat
+        quantity = Quantity(s.getId(), "species", s, given)
+        if not as_amount:
+            quantity.compartment, quantity.given_amount = s.getCompartment(), s.isSetInitialAmount()
+        elif s.isSetInitialConcentration() and not s.isSetInitialAmount():
+            quantity.value, quantity.initial = None, ("concentration", s.getCompartment(), given)
+        return quantity
+
+    def references(self, reaction: Any) -> list[Any]:
+        """The species of a reaction: its reactants, and then its products."""
+        return [*(reaction.getReactant(i) for i in range(reaction.getNumReactants())),
+                *(reaction.getProduct(i) for i in range(reaction.getNumProducts()))]
+
+    def _stoichiometry_given(self, reference: Any) -> float | None:
+        if self.level < 3:
+            return reference.getStoichiometry() / (reference.getDenominator() or 1)
+        return reference.getStoichiometry() if reference.isSetStoichiometry() else None
+
+    def _changed(self, name: str, how: str, element: Any) -> Quantity:
+        quantity = self.quantities.get(name)
+        if quantity is None:
+            if name in self.reactions:
+                raise Refused(f"{named(element)} sets the rate of a reaction")
+            raise Refused(f"{named(element)} sets '{name}', which is not there")
+        if quantity.changes and quantity.changes != how:
+            raise Refused(f"{quantity.where} is changed by several elements, one of which is {named(element)}")
+        quantity.changes = how
+        return quantity
+
+    def _rules(self) -> None:
+        for rule in self._all("Rule"):
+            if rule.isAlgebraic():
+                if rule.isSetMath():
+                    raise Refused(f"the {named(rule)}: equations without derivatives are not solved")
+                continue
+            if not rule.isSetMath():
+                continue  # as if it were not there
+            how = "assignment" if rule.isAssignment() else "rate"
+            quantity = self._changed(rule.getVariable(), how, rule)
+            quantity.formula = rule
+        for i in range(self.model.getNumInitialAssignments()):
+            initial = self.model.getInitialAssignment(i)
+            if not initial.isSetMath():
+                continue
+            symbol = initial.getSymbol()
+            if symbol not in self.quantities:
+                raise Refused(f"the {named(initial)} sets what is not there")
+            self.quantities[symbol].initial = initial
+        for reaction in self.reactions.values():
+            for reference in self.references(reaction):
+                name = reference.getSpecies()
+                if name not in self.quantities:
+                    raise Refused(f"{named(reference)} of {named(reaction)} names no species")
+                quantity = self.quantities[name]
+                element = quantity.element
+                if not (element.getBoundaryCondition() or element.getConstant() or quantity.changes):
+                    quantity.changes = "reactions"
+        for event in self._all("Event"):
+            for i in range(event.getNumEventAssignments()):
+                assignment = event.getEventAssignment(i)
+                name = assignment.getVariable()
+                if name not in self.quantities:
+                    raise Refused(f"{named(assignment)} of {named(event)} sets '{name}', which is not there")
+                if assignment.isSetMath() and not self.quantities[name].changes:
+                    self.quantities[name].changes = "events"
+
+    # -- What is stored ------------------------------------------------------------------------------------------------
+
+    def component_name(self, wanted: str, of: str = "") -> str:
+        """A name like the wanted one that a component of a model can have. No component has it yet, and it is no id of
+        the file, except the id `of` what is named."""
+        name = re.sub("_+", "_", re.sub("[^A-Za-z0-9_]", "_", wanted)).strip("_") or "unnamed"
+        name = name if name[0].isalpha() else f"x_{name}"
+        return sym.free_name(name, {*self.names.values(), *({*self.quantities, *self.reactions} - {of})})
+
+    def new_name(self, wanted: str) -> str:
+        """Such a name for something that is no element of the file."""
+        name = self.component_name(wanted)
+        self.names[f"made {name}"] = name
+        return name
+
+    def _represent(self) -> None:
+        """Decides how each quantity is stored, and with which name."""
+        for quantity in self.quantities.values():
+            if quantity.compartment and quantity.changes not in ("rate", "assignment"):
+                volume = self.quantities[quantity.compartment]
+                known = volume.value is not None or volume.initial is not None
+                quantity.in_amount = volume.changes != "" or not known
+        for quantity in sorted(self.quantities.values(), key=lambda q: q.kind == "species"):
+            if quantity.changes != "assignment":
+                self.names[quantity.id] = self.component_name(
+                    f"{quantity.id}_amount" if quantity.in_amount else quantity.id, quantity.id)
+        for quantity in self.quantities.values():
+            self.stored(quantity)
+        for quantity in self.quantities.values():
+            name = self.names.get(quantity.id)
+            start = self._start(quantity)
+            if name is not None and start is not None and quantity.symbol.op == "symbol":
+                self.defaults[name] = start() if callable(start) else start
+
+    def stored(self, quantity: Quantity) -> Any:
+        """The symbol of what is stored of a quantity, or the constant that it is."""
+        if quantity.symbol is None and quantity.changes != "assignment":
+            quantity.symbol = self._once(("stored", quantity.id), lambda: self._stored(quantity), quantity.where)
+        return quantity.symbol
+
+    def _stored(self, quantity: Quantity) -> Any:
+        name = self.names[quantity.id]
+        if quantity.changes:
+            return sym.symbol("state", name)
+        if quantity.kind == "stoichiometry" and quantity.initial is None or (
+                self.swept is not None and quantity.id not in self.swept):
+            start = self._start(quantity)
+            start = start() if callable(start) else start
+            if start is not None and is_constant(start):
+                return start
+        if quantity.value is not None and math.isinf(quantity.value) and quantity.initial is None and (
+                quantity.id not in (self.swept or ())):
+            return constant(quantity.value)  # which no parameter of a model can have
+        return sym.symbol("parameter", name)
+
+    def _start(self, quantity: Quantity) -> Any:
+        """The value at the start, as it is stored: a constant, a function that gives an expression, or None."""
+        volume = quantity.compartment
+        if isinstance(quantity.initial, tuple):
+            _, inside, given = quantity.initial
+            return lambda: multiply(constant(given), self.meaning(inside, quantity.where))
+        if quantity.initial is not None:
+            formula, where = quantity.initial.getMath(), named(quantity.initial)
+            if quantity.in_amount:
+                return lambda: multiply(number(self.translate(formula, where)), self.meaning(volume, where))
+            return lambda: number(self.translate(formula, where))
+        if quantity.value is None:
+            return None
+        given = constant(quantity.value)
+        if volume and quantity.given_amount != quantity.in_amount:
+            if quantity.in_amount:
+                return lambda: multiply(given, self.meaning(volume, quantity.where))
+            return lambda: divide(given, self.meaning(volume, quantity.where))
+        return given
+
+    # -- What ids mean -------------------------------------------------------------------------------------------------
+
+    def _once(self, key: Any, make: Any, where: str) -> Any:
+        """What `make` gives, computed once; refuses what depends on itself."""
+        if key not in self._known:
+            if key in self._under_way:
+                raise Refused(f"{where} depends on itself")
+            self._under_way.append(key)
+            self._known[key] = make()
+            self._under_way.pop()
+        return self._known[key]
+
+    def meaning(self, name: str, where: str) -> Any:
+        """The expression that an id stands for in formulas."""
+        if name in self.reactions:
+            return self.reaction_rate(name)
+        quantity = self.quantities.get(name)
+        if quantity is None:
+            raise Refused(f"'{name}', which is no species, parameter, compartment or reaction, in {where}")
+        if quantity.changes == "assignment":
+            rule = quantity.formula
+            return self._once(("meaning", name), lambda: number(self.translate(rule.getMath(), named(rule))),
+                              named(rule))
+        symbol = self.stored(quantity)
+        return divide(symbol, self.meaning(quantity.compartment, where)) if quantity.in_amount else symbol
+
+    def amount(self, name: str) -> Any:
+        """The amount of a species."""
+        quantity = self.quantities[name]
+        if quantity.in_amount:
+            return self.stored(quantity)
+        meaning = self.meaning(name, quantity.where)
+        return multiply(meaning, self.meaning(quantity.compartment, quantity.where)) if quantity.compartment else (
+            meaning)
+
+    def concentration(self, name: str) -> Any:
+        """The concentration of a species."""
+        quantity = self.quantities[name]
+        meaning = self.meaning(name, quantity.where)
+        if quantity.compartment:
+            return meaning
+        return divide(meaning, self.meaning(quantity.element.getCompartment(), quantity.where))
+
+    def reaction_rate(self, name: str) -> Any:
+        """The rate of a reaction, in substance per time."""
+        reaction = self.reactions[name]
+        return self._once(("reaction", name), lambda: self._kinetic_law(reaction), named(reaction))
+
+    def _kinetic_law(self, reaction: Any) -> Any:
+        law = reaction.getKineticLaw()
+        if law is None or not law.isSetMath():
+            raise Refused(f"{named(reaction)} has no kinetic law")
+        local = {}
+        getters = (law.getNumLocalParameters, law.getLocalParameter) if self.level > 2 else (
+            law.getNumParameters, law.getParameter)
+        for i in range(getters[0]()):
+            parameter = getters[1](i)
+            full = f"{reaction.getId()}_{parameter.getId()}"
+            self.local_names.append(full)
+            given = constant(parameter.getValue()) if parameter.isSetValue() else None
+            if self.swept is not None and full not in self.swept and given is not None:
+                local[parameter.getId()] = given
+                continue
+            component = self.names[f"{reaction.getId()}.{parameter.getId()}"] = self.component_name(full)
+            local[parameter.getId()] = sym.symbol("parameter", component)
+            if given is not None:
+                self.defaults[component] = given
+        return number(self.translate(law.getMath(), f"the kinetic law of {named(reaction)}", local))
+
+    def stoichiometry(self, reference: Any, reaction: Any) -> Any:
+        """The stoichiometry of a species in a reaction."""
+        name = reference.getIdAttribute()
+        where = f"the stoichiometry of '{reference.getSpecies()}' in {named(reaction)}"
+        if self.level == 2 and reference.isSetStoichiometryMath() and reference.getStoichiometryMath().isSetMath():
+            return number(self.translate(reference.getStoichiometryMath().getMath(), where))
+        if name:
+            return self.meaning(name, where)
+        given = self._stoichiometry_given(reference)
+        if given is None:
+            raise Refused(f"{where} has no value")
+        return constant(given)
+
+    def amount_rate(self, name: str) -> Any:
+        """The rate of a species' amount that reactions cause."""
+        return self._once(("amount rate", name), lambda: self._reactions_of(name), self.quantities[name].where)
+
+    def _reactions_of(self, name: str) -> Any:
+        terms = []
+        for key, reaction in self.reactions.items():
+            reactants = reaction.getNumReactants()
+            for i, reference in enumerate(self.references(reaction)):
+                if reference.getSpecies() == name:
+                    term = multiply(self.stoichiometry(reference, reaction), self.reaction_rate(key))
+                    terms.append((i < reactants, term))
+        gained = total([t for lost, t in terms if not lost])
+        rate = subtract(gained, total([t for lost, t in terms if lost]))
+        element = self.quantities[name].element
+        factor = element.getConversionFactor() or self.model.getConversionFactor()
+        return multiply(rate, self.meaning(factor, self.quantities[name].where)) if factor else rate
+
+    # -- Rates ---------------------------------------------------------------------------------------------------------
+
+    def slope(self, quantity: Quantity) -> Any:
+        """The derivative of a state by time."""
+        return self._once(("slope", quantity.id), lambda: self._slope(quantity), quantity.where)
+
+    def _slope(self, quantity: Quantity) -> Any:
+        if quantity.changes == "rate":
+            return number(self.translate(quantity.formula.getMath(), named(quantity.formula)))
+        if quantity.changes != "reactions":
+            return constant(0.0)
+        rate = self.amount_rate(quantity.id)
+        if quantity.compartment and not quantity.in_amount:
+            return divide(rate, self.meaning(quantity.compartment, quantity.where))
+        return rate
+
+    def states(self) -> list[Quantity]:
+        """What the model integrates."""
+        return [q for q in self.quantities.values() if q.changes not in ("", "assignment")]
+
+    def rate_of(self, name: str, where: str) -> Any:
+        """The derivative by time of what an id stands for."""
+        quantity = self.quantities.get(name)
+        if quantity is not None and quantity.changes != "assignment" and not quantity.in_amount:
+            return self.slope(quantity) if quantity.changes else constant(0.0)
+        return self._once(("rate of", name), lambda: self.total_derivative(self.meaning(name, where), where), where)
+
+    def total_derivative(self, expression: Any, where: str) -> Any:
+        """The derivative by time of an expression along the solution."""
+        states = self.states()
+        found = derivatives([expression], [sym.time, *(q.symbol for q in states)])
+        if found is None:
+            raise Refused(f"the rate of something that has no derivative, in {where}")
+        rate = constant(0.0)
+        for i, partial in found[0].items():
+            slope = constant(1.0) if i == 0 else self.slope(states[i - 1])
+            if not (is_constant(slope) and value_of(slope) == 0):
+                rate = add(rate, multiply(number(partial), slope))
+        return rate

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Models as functions of values, and their derivatives."""

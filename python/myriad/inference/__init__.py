@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Models and data: fits, profiles, designs."""

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Models: recorded, written in C++, or made of others."""

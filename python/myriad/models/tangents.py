@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: MIT
+"""A model with solutions of its variational equations, by `myriad::with_tangents`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..base.errors import Error, at, users_line
+from ..symbolic.numbers import is_whole
+from .extended import Extended
+
+if TYPE_CHECKING:
+    from .any_model import AnyModel
+
+__all__ = ["with_tangents"]
+
+
+def with_tangents(model: AnyModel, vectors: int = 1) -> WithTangents:
+    """The model with tangent vectors: one gives the largest Lyapunov exponent, as many as there are states the full
+    spectrum. They are orthonormalised at the end of every phase, and their growth is summed from phase
+    `transient_phases` on, a shared integer that is 0 unless the sweep sets it: `exponents(run)` has the result. Phases
+    should be short enough (docs/writing_a_model.md)."""
+    return WithTangents(model, vectors)
+
+
+class WithTangents(Extended):
+    """A model with tangent vectors. Component c of tangent i is the state `<c>_tangent_<i>`, and the growth of tangent
+    i the accessory `growth_<i>`, counted from 1."""
+
+    not_interpreted = "it has tangents"
+
+    def __init__(self, model: AnyModel, vectors: int) -> None:
+        n = len(model.states)
+        if not is_whole(vectors, 1, n):
+            raise Error(f"{vectors!r} tangent vectors{at(users_line())}: a model of {n} states has from 1 to {n}")
+        if model.mass_matrix is not None:
+            raise Error(f"the model has a mass matrix{at(users_line())}, with which tangents of algebraic states would "
+                        "not be independent: solve its algebraic equations in the others")
+        self.vectors = int(vectors)
+        numbers = range(1, self.vectors + 1)
+        tangents = [f"{state}_tangent_{i}" for i in numbers for state in model.states]
+        growth = [f"growth_{i}" for i in numbers]
+        # The same orthonormal vectors for all instances, columns of a reflection that no symmetry leaves invariant.
+        # With the rounding of the C++ library's `initial_tangents`.
+        golden = 0.6180339887498949 * np.arange(1, n + 1)
+        mirror = 1 + golden - np.floor(golden)
+        mirror /= np.sqrt(sum(mirror * mirror))
+        start = np.eye(n) - 2 * mirror[:, None] * mirror
+        super().__init__(model, {"state": tangents, "shared_integer": ["transient_phases"],
+                                 "accessory": [*growth, "time_summed", "phase_began"]},
+                         {"transient_phases": 0, **dict(zip(tangents, start[:, :self.vectors].T.ravel()))}, "tangents")
+
+    def source(self) -> tuple[str, str]:
+        """The text that kernels are compiled from, and the name of its struct."""
+        text, struct = self.model.source()
+        return (f"{text}\n#include <myriad/tangent.hpp>\n"
+                f"using {struct}_tangents = myriad::with_tangents<{struct}, {self.vectors}>;\n"), f"{struct}_tangents"
+
+    def __repr__(self) -> str:
+        return f"<{self.vectors} tangents of {self.model!r}>"

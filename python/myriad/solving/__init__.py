@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""`solve`: its options and inputs."""
