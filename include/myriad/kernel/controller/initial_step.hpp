@@ -19,8 +19,8 @@ MYRIAD_FUNCTION S cautious_step(const kernel_arguments<Model, R>& args, const S&
     return S(part) * select(domain <= S(largest_of<R>), domain, S(args.step));
 }
 
-/// The longest first step, as a part of the domain: nearly a tenth, and irrational, (3 - sqrt 5) / 8, so that its stages
-/// do not lie at whole periods of a forcing of which the domain has a round number.
+/// The longest first step, as a part of the domain: nearly a tenth, and irrational, (3 - sqrt 5) / 8, so that its
+/// stages do not lie at whole periods of a forcing of which the domain has a round number.
 constexpr double first_part = 0.095491502812526288;
 
 /// By the slope alone: no component changes by more than `args.first_change` of its size, which is at least atol /
