@@ -400,6 +400,7 @@ struct triggered_tape_model : tape_model<size> {
             return one.priority;
         };
         const auto taken = queue::take(lane, priority, current_tape->seed);
+        if (taken.action < 0) return myriad::action::proceed;
         waiting.value = taken.value;
         return tape_model<size>::hook(current_tape->late_action[taken.action], lane, &waiting);
     }

@@ -2,6 +2,7 @@
 // Calls every function of a model for one instance. Host code, for studies.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -93,11 +94,7 @@ public:
             for (int j = 0; j < n_event<Model>; ++j)
                 change(model_function::after_event, j, [j](auto& lane) { return Model::after_event(j, lane); });
         }
-        if constexpr (has_after_stop<Model>) {
-            for (int j = 0; j < n_stop<Model>; ++j)
-                change(model_function::after_stop, j,
-                       [&, j](auto& lane) { return Model::after_stop(j, place_.at, lane); });
-        }
+        show_stops(data_);
         if constexpr (has_triggers<Model>) {
             for (int j = 0; j < n_trigger<Model>; ++j)
                 change(model_function::after_trigger, j, [j](auto& lane) { return Model::after_trigger(j, lane); });
@@ -158,11 +155,30 @@ private:
         take_changed(function, number, shown_kind::next_step, 0, before.h_next, data.h_next);
         if (wanted != action::proceed) take(function, number, shown_kind::wish, 0, static_cast<int>(wanted));
     }
-    /// The same on a copy, which is where the functions of the model were called.
+    /// The same on a copy, which is where the functions of the model were called; then what the action has set a time
+    /// for.
     template <class Hook>
-    void change(model_function function, int number, const Hook& hook) const {
+    void change(model_function function, int number, const Hook& hook) {
         lane_data<Model, R> data = data_;
         act(function, number, hook, data);
+        show_stops(data);
+    }
+    /// Calls the action of each stop that has a time, at that time, as the loop does: one that is not due may have
+    /// nothing to take from a queue. Once for each stop.
+    void show_stops(const lane_data<Model, R>& from) {
+        if constexpr (has_after_stop<Model>) {
+            for (int j = 0; j < n_stop<Model>; ++j) {
+                const inputs<Model, R>& p = from;
+                const R time = Model::template stop_time<R>(j, place_.at, p);
+                if (stop_is_shown_[j] || !std::isfinite(time)) continue;
+                stop_is_shown_[j] = true;
+                lane_data<Model, R> data = from;
+                data.t = time;
+                act(
+                    model_function::after_stop, j, [&, j](auto& lane) { return Model::after_stop(j, place_.at, lane); },
+                    data);
+            }
+        }
     }
 
     /// The conditions for some of the signs that their event functions may have.
@@ -179,6 +195,7 @@ private:
     void* to_;
     void (*take_)(void* to, const shown_value&);
     lane_data<Model, R> data_{};
+    std::array<bool, n_stop<Model> + 1> stop_is_shown_{};
 };
 
 /// See `behaviour_function`.
