@@ -378,5 +378,5 @@ TEST_CASE("a zero derivative of the first order has those of the second that it 
     const twice u(dual<double>(4, 0), dual<double>(0, 5));  // u' = 0, whose own derivative is 5
     CHECK(sqrt(u).derivative.derivative == 0.5 / 2 * 5);
     CHECK(log(u).derivative.derivative == 5.0 / 4);
-    CHECK(pow(u, 0.5).derivative.derivative == Catch::Detail::Approx(0.5 / 2 * 5));
+    CHECK(pow(u, 0.5).derivative.derivative == Approx(0.5 / 2 * 5));
 }
