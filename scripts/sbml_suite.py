@@ -30,6 +30,7 @@ import myriad as my
 from myriad.base import component_kinds as kinds
 from myriad.kernels import nvrtc
 from myriad.base.errors import CannotInterpret
+from myriad.models.any_model import names_of
 from myriad.models.methods import method_type
 from myriad.models.once_per_phase import prepared
 from myriad.formats.sbml.math import Refused

@@ -71,8 +71,9 @@ def test_a_kernel_that_is_prepared_is_not_compiled_again(run, tmp_path):
     run("""
 from myriad.base import component_kinds as kinds
 from myriad.kernels import nvrtc
+from myriad.models.any_model import names_of
 from myriad.models.methods import default, method_type
-names = kinds.names_of(model)
+names = names_of(model)
 nvrtc.prepare(*model.source(), method_type(default), "double", tuple(len(names[kind]) for kind in kinds.shared), 0)
 assert solve("cuda", 3).report.kernel == "cache", solve("cuda", 3).report.kernel
 """, MYRIAD_CACHE_DIR=tmp_path)
