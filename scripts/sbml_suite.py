@@ -173,7 +173,7 @@ def compile_for_gpu(folder, options):
                 break
             with contextlib.suppress(my.Error):
                 model = prepared(my.read_sbml(file))
-                names = kinds.names_of(model)
+                names = names_of(model)
                 nvrtc.prepare(*model.source(), method_type(options.method, (), True), "double",
                               tuple(len(names[kind]) for kind in kinds.shared),
                               int(options.device.partition(":")[2] or 0))
