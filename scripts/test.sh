@@ -110,8 +110,7 @@ build() {
             cmake --build --preset "$preset" --parallel "$jobs" "${targets[@]}" -- -k 0 || built=no
 }
 
-# The kernels that are compiled for GPUs without --all: one file for each feature that the kernels in tests/cuda lack.
-# Together they take half a minute for each that is added here.
+# The files whose kernels are compiled for GPUs without --all: one for each feature that the kernels in tests/cuda lack.
 features=(controller_policies dae first_step_models function_values hooked_steps jumps phased queued
     random_draws stiff_tangents tangent_jumps with_events)
 

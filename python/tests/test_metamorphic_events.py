@@ -430,7 +430,7 @@ def random_cases(count, seed):
 
 @pytest.mark.long
 def test_all_but_one_in_a_hundred_random_combinations_have_the_same_events():
-    """Three of these fail, two of them with a second event of another form at the same instant: faults to be mended."""
+    """Three of these fail, two of them with a second event of another form at the same instant: known faults."""
     counted, wrong = random_cases(500, 1)
     assert len(wrong) <= 5, "\n".join(wrong)
 

@@ -52,8 +52,8 @@ struct scanned_part {
     std::int32_t points, turns, function;        // how many and which were looked at
 };
 
-/// What the rare ways to locate an event work on, for one lane at a time: in memory, as in registers it would take
-/// those of the whole loop.
+/// What locating an event works on, for one lane at a time. It lies in memory: in registers, it would lessen those that
+/// every step has.
 template <class Model, class R, bool events = (n_event<Model> > 0)>
 struct event_scratch {
     step_ends<Model, R> step;
@@ -67,7 +67,7 @@ struct event_scratch {
 template <class Model, class R>
 struct event_scratch<Model, R, false> {};
 
-/// All of a pack of so many lanes. It is one object, as each would take registers for its address.
+/// What event location keeps and works on in a pack. One object, since each would take registers for its address.
 template <class Model, class R, int lanes>
 struct event_memories {
     event_memory<Model, R> lane[lanes] = {};
