@@ -2,18 +2,14 @@
 # myriad_single_lanes(): which of the project's own model files test just as much without packs.
 include_guard(GLOBAL)
 
-option(MYRIAD_ALL_PACKS
-       "Compile all of the project's own models for packs as users have them; off: those that show as much one \
-instance at a time without, and other tests' models for packs of one SIMD batch, in half of the time" ON)
-
 # Files that scripts/test.sh compiles for GPUs only with --all.
 file(WRITE "${PROJECT_BINARY_DIR}/single_lanes.txt" "")
 
-# myriad_single_lanes(<file>...): without MYRIAD_ALL_PACKS the kernels of these files, of the same directory, integrate
+# myriad_single_lanes(<file>...): without MYRIAD_THOROUGH the kernels of these files, of the same directory, integrate
 # one instance at a time on the CPU. A program must not contain a kernel in both variants. For files that test numbers
 # (orders, references, closed forms), not interactions between lanes, and whose features other files test in packs.
 function(myriad_single_lanes)
-    if(NOT MYRIAD_ALL_PACKS)
+    if(NOT MYRIAD_THOROUGH)
         set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_DEFINITIONS MYRIAD_SCALAR_LANES)
     endif()
     foreach(file IN LISTS ARGN)

@@ -24,8 +24,8 @@ Steps that run without options: what shows that a build is right.
 
 With --full, python runs all its tests, also those that take long and those with other packages, JAX and Dask among
 them, and there are these steps. All run in the order ci, programs, python, and then as they stand here.
-  programs  in the build of ci: examples, benchmarks, validation, projects outside that use the library, every public
-            header by itself, what must not compile, compile times, derivatives of every model, the texts of docs
+  programs  in the build of ci: examples, a benchmark beside peers, validation, projects outside that use the library,
+            headers by themselves, what must not compile, compile times, derivatives of models, the texts of docs
   docs      the documentation as a site: warnings are errors, links within it lead somewhere (skipped where Sphinx
             cannot be installed)
   cuda      the tests' kernels compile for one GPU and as PTX, some within limits of registers and stack; a program with
@@ -33,14 +33,15 @@ them, and there are these steps. All run in the order ci, programs, python, and 
   asan      address and undefined-behaviour sanitizer
   tsan      thread sanitizer
 
-With --all also this.
+With --all every model, kernel, method, header, benchmark, case study and way to install is built and checked, kernels
+as users have them, and there are these steps too.
   strict    all models in packs, for AVX2: events, output and reductions; scalar lanes and packs agree bit for bit
   clang     clang++, warnings are errors
 
 Options:
   --quick          only ci
   --full           what continuous integration runs
-  --all            all of them, in cuda all kernels, and all models in packs
+  --all            all of them, thoroughly
   --only STEP,...  only these
   --jobs N         processes at a time (default: number of cores)
   --help           this text
@@ -48,7 +49,7 @@ END
 }
 
 steps=("${usual_steps[@]}")
-every_kernel=no
+thorough=OFF
 other_packages=no
 jobs=$(nproc)
 while (($#)); do
@@ -56,7 +57,7 @@ while (($#)); do
         --help | -h) usage; exit 0 ;;
         --quick) steps=(ci) ;;
         --full) steps=("${full_steps[@]}") other_packages=yes ;;
-        --all) steps=("${all_steps[@]}") other_packages=yes every_kernel=yes ;;
+        --all) steps=("${all_steps[@]}") other_packages=yes thorough=ON ;;
         --only)
             (($# > 1)) || usage_error "--only needs steps: ${all_steps[*]}"
             IFS=, read -r -a wanted <<<"$2"
@@ -102,7 +103,7 @@ programs='^(benchmarks|compile_time|derivatives|docs|examples|headers|install|mu
 # build STEP PRESET: sets `built`.
 build() {
     local step=$1 preset=$2 options=() targets=()
-    if [[ $every_kernel == yes ]]; then options+=(-DMYRIAD_ALL_PACKS=ON); fi
+    if [[ $thorough == ON ]]; then options+=(-DMYRIAD_THOROUGH=ON); fi
     if [[ $step == ci ]]; then targets=(--target tests/all); fi
     built=yes
     quietly "build/$preset/configure.log" cmake --preset "$preset" "${options[@]}" &&
@@ -119,9 +120,10 @@ features=(controller_policies dae first_step_models function_values hooked_steps
 build_kernels() {
     local chosen
     chosen=(--except build/cuda/single_lanes.txt --files "/($(IFS='|' && echo "${features[*]}"))_[0-9a-f]+\\.cu")
-    if [[ $every_kernel == yes ]]; then chosen=(); fi
+    if [[ $thorough == ON ]]; then chosen=(); fi
     quietly build/cuda/configure.log \
-        cmake --preset cuda -DMYRIAD_CUDA_ARCHITECTURES=90 -DMYRIAD_BUILD_VALIDATION=OFF &&
+        cmake --preset cuda -DMYRIAD_CUDA_ARCHITECTURES=90 -DMYRIAD_BUILD_VALIDATION=OFF \
+        -DMYRIAD_THOROUGH="$thorough" &&
         quietly build/cuda/build.log \
             cmake --build --preset cuda --parallel "$jobs" --target solver_test duffing -- -k 0 &&
         quietly build/cuda/kernels.log tests/cuda/compile_kernels.py build/cuda --jobs "$jobs" "${chosen[@]}"
@@ -186,7 +188,7 @@ run_step() {
             local status=0 log=build/python.log
             local more=()
             if [[ $other_packages == yes ]]; then more=(--others --full); fi
-            if [[ $every_kernel == yes ]]; then more+=(--all); fi
+            if [[ $thorough == ON ]]; then more+=(--all); fi
             quietly "$log" scripts/python.sh "${more[@]}" || status=$?
             if ((status == 77)); then
                 say "python: skipped, $(tail -n 1 "$log")"

@@ -193,8 +193,8 @@ def write(comments, rows, images, command):
             "each must be reported (`validation/mutation/coefficients.cpp`; a coefficient of a is changed without "
             "its node c). It then compiles the kernels from headers with one line changed (the other direction of "
             "events, a lost action, a slope kept after a jump, a rejected step accepted, and more: "
-            "`validation/mutation/logic.py`), and each must fail this validation. CI runs the first part for half of "
-            "the methods, and four changes of the second.", ""]
+            "`validation/mutation/logic.py`), and each must fail this validation. `scripts/test.sh --all` runs the "
+            "first part, and four changes of the second.", ""]
     return "\n".join(out)
 
 

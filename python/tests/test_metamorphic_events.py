@@ -373,6 +373,22 @@ def test_units_that_are_powers_of_two_change_no_bit(motion, function, step):
     assert not wrong, "\n".join(wrong)
 
 
+@pytest.mark.parametrize("precision", ["double", "float"])
+def test_an_action_that_scales_the_function_at_its_event_does_not_make_it_fire_again(precision):
+    """What is left of v at its event is an error of rounding: so is any multiple of it."""
+    x, v, k, factor, n = *my.states("x v"), my.parameter("k"), my.shared("factor"), my.integer_accessory("n")
+    stiffness = np.linspace(1, 2, 200)
+    turns = np.floor((60 * np.sqrt(stiffness) + 1.5 * np.pi) / (2 * np.pi))
+    functions = (v, 1e20 * v, my.sinh(5 * v), my.exp(v) - 1, v * v * v)
+    for function, factors in zip(functions, [(0.9, 1 + 1e-9, 3, -1, -5)] * 4 + [(0.9, 1.9, -1)]):
+        model = my.model({x: v, v: -k * x}, accessories={n: 0},
+                         events=my.event(function, direction="falling", do={v: factor * v, n: n + 1}))
+        for value in factors:
+            run = my.solve(model, {k: stiffness, factor: value}, start={x: 0, v: 1}, time=(0, 60), rtol=1e-5,
+                           method="cash_karp", precision=precision, device="cpu")
+            assert (run["n"] == turns).sum() >= 199, (function, value)  # float: one ends at its last turn
+
+
 def test_neighbours_change_no_bit():
     """All motions: an instance among others and alone."""
     wrong = []

@@ -38,7 +38,7 @@ def test_it_holds_what_models_are_compiled_with_and_nothing_else(files):
                    if file.suffix in endings}
     assert len(wanted) > 100 and wanted <= {name.removeprefix("myriad/include/") for name in files}
     others = [name for name in files if not name.startswith("myriad/include/")]
-    modules = {f"myriad/{file.name}" for file in (root / "python" / "myriad").glob("*.py")}
+    modules = {str(file.relative_to(root / "python")) for file in (root / "python" / "myriad").rglob("*.py")}
     modules |= {"myriad/py.typed", "myriad/_core.pyi"}  # for type checkers
     assert all(name in modules or re.match(r"myriad/_core\.[^/]*so$|myriad-[^/]*\.dist-info/", name) for name in others)
     assert modules <= set(others) and any("_core." in name for name in others)

@@ -114,11 +114,9 @@ struct lane_sides {
         const auto& own = memory_of(i);
         return own.on_jump[j] && abs(length) <= own.jump_time;
     }
-    /// Whether `length` is within the rounding of t: values that near do not show that a function has left the place
-    /// where it fired.
-    MYRIAD_FUNCTION bool is_timeless(int i, R length) const {
-        return abs(length) <= R(4) * epsilon_of<R> * abs(get_lane(s.now(), i));
-    }
+    MYRIAD_FUNCTION R rounding_of_time(int i) const { return R(4) * epsilon_of<R> * abs(get_lane(s.now(), i)); }
+    /// Whether `length` is within that: values so near do not show that a function has left the place where it fired.
+    MYRIAD_FUNCTION bool is_timeless(int i, R length) const { return abs(length) <= rounding_of_time(i); }
 };
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET

@@ -155,13 +155,17 @@ struct side_resolver {
             in_question.set(j, moved || on_jump[j] || fires_at_jump(j, i, events));
         }
         const reals rounding = sides.roundings_if_needed(i, g, in_question);
+        const R step = abs(sides.memory_of(i).redo.beyond);
+        const R location_error = R(8) * (sides.rounding_of_time(i) + epsilon_of<R> * step);
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
             const bool fires = events.which.get(j, i), waits = !fires && on_jump[j];
             const bool jumps = fires_at_jump(j, i, events);
-            // An action that hardly moves its event's function leaves it on the surface, as closely as it was located.
-            const R located = R(2) * abs(get_lane(events.value[j], i));
-            const R residual = fires && !jumps ? min(located, sides.args.event[j].tolerance) : R(0);
+            // An action that hardly moves its event's function leaves it on the surface: as closely as it was located,
+            // or so near that it gets there in no more time than location may be wrong by. (Its rounding error there
+            // does not tell: the states that it is made of were larger before.)
+            const R located = min(R(2) * abs(get_lane(events.value[j], i)), sides.args.event[j].tolerance);
+            const R residual = fires && !jumps ? max(located, abs(slope[j]) * location_error) : R(0);
             const bool beyond = abs(g[j]) > max(rounding[j], residual);
             if (g[j] != g[j]) e.flags.set(e.undefined, i, true);
             if (waits) {

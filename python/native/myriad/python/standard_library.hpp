@@ -436,6 +436,8 @@ public:
     constexpr string_view(const char* text, size_t size) : text_(text), size_(size) {}
     constexpr size_t size() const { return size_; }
     constexpr const char* data() const { return text_; }
+    constexpr const char* begin() const { return text_; }
+    constexpr const char* end() const { return text_ + size_; }
     constexpr char operator[](size_t i) const { return text_[i]; }
     constexpr size_t find(string_view what, size_t from = 0) const {
         for (size_t i = from; i + what.size_ <= size_; ++i) {
