@@ -186,7 +186,7 @@ run_step() {
             fi ;;
         python)
             local status=0 log=build/python.log
-            local more=()
+                    local more=(--durations=40)
             if [[ $other_packages == yes ]]; then more=(--others --full); fi
             if [[ $thorough == ON ]]; then more+=(--all); fi
             quietly "$log" scripts/python.sh "${more[@]}" || status=$?
