@@ -186,9 +186,10 @@ run_step() {
             fi ;;
         python)
             local status=0 log=build/python.log
-                    local more=(--durations=40)
+                    local more=()
             if [[ $other_packages == yes ]]; then more=(--others --full); fi
             if [[ $thorough == ON ]]; then more+=(--all); fi
+            more+=(--durations=40)
             quietly "$log" scripts/python.sh "${more[@]}" || status=$?
             if ((status == 77)); then
                 say "python: skipped, $(tail -n 1 "$log")"
