@@ -4,8 +4,8 @@
 import numpy as np
 import pytest
 
-import myriad as my
-from myriad.gradients import adjoint
+import myriad_ode as my
+from myriad_ode.gradients import adjoint
 
 x, y = my.states("x y")
 a, b, c = my.parameters("a b c")

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-import myriad as my
+import myriad_ode as my
 
 x, v = my.states("x v")
 k, B = my.parameters("k B")
@@ -41,7 +41,7 @@ def launches(monkeypatch):
         sizes.append(run.size)
         return run
 
-    monkeypatch.setattr("myriad.gradients.batched.solve", counted)
+    monkeypatch.setattr("myriad_ode.gradients.batched.solve", counted)
     return sizes
 
 
@@ -132,7 +132,7 @@ def test_a_weight_of_zero_counts_nothing_where_a_derivative_does_not_exist(posit
 
 
 def test_jax_lets_a_weight_of_zero_count_nothing(jax):
-    from myriad.gradients.jax_adapter import _product
+    from myriad_ode.gradients.jax_adapter import _product
     jacobian = np.array([[2.0, np.nan], [0.0, 3.0]])
 
     def product(vector):

@@ -7,9 +7,9 @@ import signal
 import numpy as np
 import pytest
 
-import myriad as my
-from myriad.inference.least_squares import LeastSquares
-from myriad.inference.student_t import student_quantile
+import myriad_ode as my
+from myriad_ode.inference.least_squares import LeastSquares
+from myriad_ode.inference.student_t import student_quantile
 
 x, w = my.states("x w")
 k, a, B, unused = my.parameters("k a B unused")
