@@ -24,8 +24,9 @@ Options:
   --required  exit status 1 instead of 77
   --others    also tests of work with other packages (JAX, Dask, SALib and more), whose download takes minutes
   --full      an argument of pytest: also tests that are marked as long, with NVRTC
-  --all       an argument of pytest: what --full does, all models for all GPUs by NVRTC, which takes minutes, and a
-              wheel as users get it; without it the wheel is optimised less, and is for tests alone
+  --all       an argument of pytest: what --full does, tests that are marked as thorough, all models for all GPUs by
+              NVRTC, which takes minutes, and a wheel as users get it; without it the wheel is optimised less, and is
+              for tests alone
   --help      this text
 END
 }

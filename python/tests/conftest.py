@@ -95,11 +95,15 @@ def ball():
 
 def pytest_addoption(parser):
     parser.addoption("--full", action="store_true", help="also what is marked as long")
-    parser.addoption("--all", action="store_true", help="also what takes minutes: all models and GPUs")
+    parser.addoption("--all", action="store_true",
+                     help="also what takes minutes: all models and GPUs, and what is marked as thorough")
 
 
 def pytest_collection_modifyitems(config, items):
-    if not config.getoption("--full") and not config.getoption("--all"):
-        for item in items:
-            if item.get_closest_marker("long"):
-                item.add_marker(pytest.mark.skip(reason="takes long: --full"))
+    if config.getoption("--all"):
+        return
+    for item in items:
+        if item.get_closest_marker("thorough"):
+            item.add_marker(pytest.mark.skip(reason="takes long, and others show most of it: --all"))
+        elif item.get_closest_marker("long") and not config.getoption("--full"):
+            item.add_marker(pytest.mark.skip(reason="takes long: --full"))

@@ -35,7 +35,7 @@ def assert_equal(found, expected, rtol=1e-9):
 
 
 # one of each kind: with Hermite's interpolant, or their own, with slopes at the end or extra stages; stiff ones
-@pytest.mark.parametrize("method", ["tsitouras_5", *(pytest.param(method, marks=pytest.mark.long) for method in (
+@pytest.mark.parametrize("method", ["tsitouras_5", *(pytest.param(method, marks=pytest.mark.thorough) for method in (
     "rosenbrock_23", "runge_kutta_4", "cash_karp", "verner_7", "rodas_5p"))])
 def test_an_adjoint_has_the_derivatives_of_the_same_steps(method):
     options = {"step": 0.01} if method == "runge_kutta_4" else {"rtol": 1e-5, "atol": 1e-5}
@@ -100,7 +100,7 @@ def test_a_stiff_network_that_needs_pivots_has_the_gradient_of_differences():
     np.testing.assert_allclose(gradient, expected, rtol=1e-6, atol=1e-7 * np.abs(expected).max())
 
 
-@pytest.mark.long
+@pytest.mark.thorough
 def test_doses_at_stop_times_have_an_adjoint():
     dose, share = my.parameters("dose share")
     doses = my.stop(0.0, every=0.5, count=4, do={x: x + share * dose, y: y + (1 - share) * dose * my.exp(-x)})
@@ -112,7 +112,7 @@ def test_doses_at_stop_times_have_an_adjoint():
                            samples is None else 2), samples=samples, rtol=1e-8, atol=1e-8))
 
 
-@pytest.mark.long
+@pytest.mark.thorough
 def test_events_that_depend_on_the_state_have_an_adjoint():
     g, r, floor = my.parameters("g r floor")
     impact = my.event(x - floor * (1 + 0.1 * my.sin(my.time)), direction="falling", do={y: -r * y}, name="impact")
@@ -143,7 +143,7 @@ def test_events_without_an_action_change_no_gradient():
     np.testing.assert_allclose(found[1], both(driven, sets, **call)[0][1], rtol=1e-7)
 
 
-@pytest.mark.long
+@pytest.mark.thorough
 def test_a_network_with_sparse_factors_has_the_derivatives_of_the_same_steps():
     z = my.states([f"z{i}" for i in range(7)])
     flow = [a * z[i] - 50 * z[i + 1] * z[i + 1] for i in range(6)]

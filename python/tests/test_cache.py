@@ -359,6 +359,7 @@ def _run_two_models(tmp_path, between, before="", wrap=(), **environment):
     return told.stdout.split()
 
 
+@pytest.mark.thorough
 def test_a_second_model_is_its_own_after_a_program_has_closed_unknown_descriptors(tmp_path):
     assert _run_two_models(tmp_path, "os.closerange(3, 1024)") == ["0.3679", "2.7183"]
 
@@ -399,6 +400,7 @@ def test_a_library_without_the_symbol_does_not_poison_the_process(tmp_path, monk
 # Where little is as usual
 # ---------------------------------------------------------------------------------------------------------------------
 
+@pytest.mark.thorough
 def test_a_program_that_ignores_sigchld_compiles(tmp_path):
     ignore = "import signal; signal.signal(signal.SIGCHLD, signal.SIG_IGN)\n"
     assert _run_two_models(tmp_path, "", before=ignore) == ["0.3679", "2.7183"]
@@ -472,6 +474,7 @@ def test_models_are_loaded_from_a_cache_on_a_disk_that_forbids_code(tmp_path):
     assert _run_two_models(tmp_path, "", wrap=wrap, MYRIAD_CACHE_DIR=str(tmp_path / "small")) == ["0.3679", "2.7183"]
 
 
+@pytest.mark.thorough
 def test_models_are_compiled_elsewhere_where_the_disk_of_the_cache_is_full(tmp_path):
     for size in ("size=128k", "size=128k,nr_inodes=2"):
         wrap = _mounted(size, '"$@"')

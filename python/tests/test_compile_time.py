@@ -98,6 +98,7 @@ def cpu_seconds(model, folder, monkeypatch, limit=None):
     return after.ru_utime - before.ru_utime
 
 
+@pytest.mark.thorough
 @pytest.mark.skipif(gxx is None, reason="there is no g++")
 def test_a_network_of_twelve_does_not_take_minutes_to_compile(tmp_path, monkeypatch):
     x = my.state("x")

@@ -160,6 +160,7 @@ def all_of(function, arguments):
         return list(pool.map(lambda a: function(*a), arguments))
 
 
+@pytest.mark.thorough
 @pytest.mark.skipif(nvcc is None, reason="there is no nvcc")
 def test_kernels_have_the_registers_that_nvcc_gives_them(tmp_path, request):
     chosen = [*cases, *every_model] if request.config.getoption("--all") else [cases[4]]
@@ -177,6 +178,7 @@ def test_all_methods_hooks_and_events_compile(request):
     assert all(0 < registers < 256 for registers, _ in found)
 
 
+@pytest.mark.thorough
 def test_units_beyond_the_registers_of_a_thread_are_compiled_for_teams(monkeypatch):
     case = ring, "tsitouras_5", (), False, "double"
     stack_of_team = by_nvrtc(case)[1]

@@ -426,6 +426,7 @@ assert np.isclose(sums["total"], sums["x_end"].sum())
 """, MYRIAD_SIMULATED_GPUS=2)
 
 
+@pytest.mark.thorough
 def test_a_generated_study_on_a_gpu_goes_on_and_marks_what_is_not_finite(run):
     run(GENERATED + """
 import tempfile
@@ -493,6 +494,7 @@ compare(my.model({{x: v + around @ v, v: force - k * x}}), precision={precision!
 """)
 
 
+@pytest.mark.thorough
 def test_teams_call_the_hooks_of_units_and_find_their_events_and_summaries_as_one_thread_does(run):
     run("n, threads = 3, 2" + TEAMS + """
 top, when, work, last = (units.accessory(name) for name in ("top", "when", "work", "last"))
@@ -605,6 +607,7 @@ def run_jax(run):
     return lambda script, **variables: run(JAX + script, **variables)
 
 
+@pytest.mark.thorough
 def test_jax_programs_on_a_gpu_have_the_results_and_derivatives_of_the_host_in_one_call(run_jax):
     run_jax("""
 from myriad_ode.gradients import batched
@@ -714,7 +717,7 @@ def close(found, expected):
 """
 
 
-@pytest.mark.parametrize("method", ["dormand_prince_5", "rodas_5p"])
+@pytest.mark.parametrize("method", ["dormand_prince_5", pytest.param("rodas_5p", marks=pytest.mark.thorough)])
 def test_an_adjoint_on_a_gpu_has_the_gradients_of_the_cpu(run, method):
     run(MODEL + ADJOINT + f"""
 for samples in (None, [0.0, 0.5, 0.7, 2.9, 3.0]):
@@ -723,6 +726,7 @@ for samples in (None, [0.0, 0.5, 0.7, 2.9, 3.0]):
 """)
 
 
+@pytest.mark.thorough
 def test_an_adjoint_on_a_gpu_takes_instances_in_groups_that_have_room(run):
     run(MODEL + ADJOINT + """
 expected = gradient("cpu")

@@ -221,7 +221,7 @@ def test_jumps_have_stops_of_their_own_only_where_derivatives_are_by_their_times
     assert len(my.with_sensitivities(model, [T, k]).model.stop_names) == 2
 
 
-@pytest.mark.parametrize("method", ["tsitouras_5", pytest.param("rodas_5p", marks=pytest.mark.long)])
+@pytest.mark.parametrize("method", ["tsitouras_5", pytest.param("rodas_5p", marks=pytest.mark.thorough)])
 def test_an_adjoint_goes_back_through_jumps(method):
     height = my.parameter("height")
     model = my.model({x: where(t % 10 < 1, height - k * x * x, -k * x * x)}, events=my.event(x - 0.9, do={x: 0.5 * x}),
