@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The extension module myriad_ode._core: what the Python side of the package calls. Private; the package checks names and
-// shapes before it calls.
+// The extension module myriad_ode._core: what the Python side of the package calls. Private; the package checks names
+// and shapes before it calls.
 #include <algorithm>
 #include <array>
 #include <chrono>
