@@ -290,11 +290,9 @@ def test_initial_values_and_parameters_that_follow_from_what_is_estimated_have_i
 
 
 def test_every_start_and_condition_is_an_instance_of_one_ensemble(several_conditions, monkeypatch):
-    from myriad_ode.formats.petab import likelihood as petab_likelihood
-
     sizes = []
-    solve = petab_likelihood.solve
-    monkeypatch.setattr(petab_likelihood, "solve", lambda *a, **o: sizes.append(o["size"]) or solve(*a, **o))
+    monkeypatch.setattr("myriad_ode.gradients.forward.solve",
+                        lambda *a, **o: sizes.append(o["size"]) or my.solve(*a, **o))
     likelihood = my.read_petab(several_conditions).likelihood()
     likelihood.loss(np.tile([0.9, 0.8, 4.0, 0.7, 0.4, 0.05], (5, 1)))
     assert sizes == [10] and likelihood.conditions == ["slow", "fast"]

@@ -397,9 +397,9 @@ def test_messages_of_axes():
         my.linspace("a", 1, 2)
     with pytest.raises(my.Error):
         my.linspace(0, 1, 0)
-    with pytest.raises(my.Error, match="shared by all instances and has several values"):
+    with pytest.raises(my.Error, match="shared by all instances and has 2 values"):
         my.study(duffing(), my.grid({k: 1, B: [1, 2]}), start={x: 1, v: 0}, time=(0, 1))
-    with pytest.raises(my.Error, match="has 3 values and 'state.x' has 2"):
+    with pytest.raises(my.Error, match="'k' has 3 values and 'x' has 2"):
         my.study(duffing(), {k: [1, 2, 3], B: 1}, start={x: [1, 2], v: 0}, time=(0, 1))
 
 

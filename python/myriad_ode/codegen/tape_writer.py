@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import collections
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING
 
@@ -77,17 +78,42 @@ class Writer:
         else:
             self._emit(f"load_{kind}", to, self.place[name][1])
 
+    def _operation(self, node: Node, arguments: Sequence[int], to: int, term: int) -> None:
+        """One operation, from the registers of its arguments; a sum of products has one more for a term."""
+        if node.op == "symbol":
+            self._symbol(node, to)
+        elif node.op == "element":
+            table, number = node.value
+            self._emit("load_shared", to, self.place[table.element_name(number)][1])
+        elif node.op == "dot":
+            table, row = node.value
+            for j, (place, argument) in enumerate(zip(table.places(row), arguments)):
+                product = term if j else to
+                self._emit("load_shared", product, self.place[table.element_name(place)][1])
+                self._emit("multiply", product, product, argument)
+                if j:
+                    self._emit("add", to, to, product)
+        elif node.op in ("lookup", "find_interval"):
+            table, first, *numbers = node.value
+            stride, rows = numbers if len(numbers) == 2 else (1, *numbers)
+            place = self.place[table.element_name(first)][1]
+            self._emit(node.op, to, rows, arguments[0], stride, float(place))
+        elif node.type == integer and node.op in _of_whole_numbers:
+            first, second = arguments
+            self._emit(_of_whole_numbers[node.op], to, first, second, int(is_long(node)))
+        elif node.op in ("constant", "truth"):
+            self._emit("constant", to, value=float(node.value))
+        else:
+            name = {"sincos.sine": "sin", "sincos.cosine": "cos", "sincospi.sine": "sinpi",
+                    "sincospi.cosine": "cospi"}.get(node.op, node.op)
+            self._emit(name, to, *arguments)
+
     def function(self, roots: Sequence[Node], stores: Sequence[tuple[str, int]]) -> None:
         """One function: the values of `roots`, each stored by (code, number) in `stores`. Everything is computed before
         anything is stored."""
         begin = len(self.codes)
         order = walk(roots)
-        uses: dict[int, int] = {}
-        for node in order:
-            for argument in node.args:
-                uses[id(argument)] = uses.get(id(argument), 0) + 1
-        for root in roots:
-            uses[id(root)] = uses.get(id(root), 0) + 1
+        uses = collections.Counter(id(one) for one in (*(a for node in order for a in node.args), *roots))
         free = list(range(_core.tape_registers))[::-1]
         register: dict[int, int] = {}
         for node in order:
@@ -104,33 +130,7 @@ class Writer:
             to = register[id(node)] = unread[-1]
             term = unread[-2] if node.op == "dot" else to
             free.remove(to)
-            if node.op == "symbol":
-                self._symbol(node, to)
-            elif node.op == "element":
-                table, number = node.value
-                self._emit("load_shared", to, self.place[table.element_name(number)][1])
-            elif node.op == "dot":
-                table, row = node.value
-                for j, (place, argument) in enumerate(zip(table.places(row), arguments)):
-                    product = term if j else to
-                    self._emit("load_shared", product, self.place[table.element_name(place)][1])
-                    self._emit("multiply", product, product, argument)
-                    if j:
-                        self._emit("add", to, to, product)
-            elif node.op in ("lookup", "find_interval"):
-                table, first, *numbers = node.value
-                stride, rows = numbers if len(numbers) == 2 else (1, *numbers)
-                place = self.place[table.element_name(first)][1]
-                self._emit(node.op, to, rows, arguments[0], stride, float(place))
-            elif node.type == integer and node.op in _of_whole_numbers:
-                first, second = arguments
-                self._emit(_of_whole_numbers[node.op], to, first, second, int(is_long(node)))
-            elif node.op in ("constant", "truth"):
-                self._emit("constant", to, value=float(node.value))
-            else:
-                name = {"sincos.sine": "sin", "sincos.cosine": "cos", "sincospi.sine": "sinpi",
-                        "sincospi.cosine": "cospi"}.get(node.op, node.op)
-                self._emit(name, to, *arguments)
+            self._operation(node, arguments, to, term)
         for root, (code, number) in zip(roots, stores):
             self._emit(code, register[id(root)], number)
         self.functions[-1].append((begin, len(self.codes)))

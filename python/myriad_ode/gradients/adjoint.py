@@ -24,11 +24,11 @@ from ..models.components import Components
 from ..models.event import Event, Stop
 from ..models.methods import default
 from ..solving.gather import ends_of
-from ..solving.solve import solve
 from ..sweeps.inputs import numbers, real
 from ..symbolic import symbols as sym
 from ..symbolic.expression import constant, symbols_of, text, walk
 from ..symbolic.rewrite import substituted
+from .forward import Forward
 
 if TYPE_CHECKING:
     from ..models.any_model import AnyModel
@@ -51,24 +51,26 @@ class Adjoint:
                  start: Mapping[str, Any], options: Mapping[str, Any], samples: Any = None) -> None:
         self.model = _checked(model, by)
         self._actions = _actions(self.model)
-        self._recorded, self._counters = _counting(self.model, self._actions)
+        recorded, self._counters = _counting(self.model, self._actions)
         self._components = components = Components(model)
         self.by, self.of = list(by), list(of)
-        self._sweep, self._start, self._options = sweep, start, _checked_options(options)
+        options = _checked_options(options)
         for name in components.of(("state", "accessory")):
             if name not in self.by and components.follows(name, self.by, {*sweep, *start, *self.by}):
                 raise no_adjoint(f"the initial value of '{name}' follows from components that derivatives are by")
         self.method = options.get("method") or default
         self._states = [sym.symbol("state", name) for name in components.states]
         self._wrt = [name for name in self.by if name not in components.states]  # chosen parameters
-        self._times = _times(samples, self._options["time"])
+        self._times = _times(samples, options["time"])
         self._capacity, self._threads = 256, 1  # records of an instance, and threads, at first
-        device = self._options["device"]
+        device = options["device"]
         self._gpu = int(device.partition(":")[2]) if device.startswith("cuda") else None
         self._most_on_gpu = _most_bytes_on_gpu
         self._place = [components.states.index(name) if name in components.states else
                        len(components.states) + self._wrt.index(name) for name in self.by]
         self._quantities = [self._quantity(one) for one in self.of]
+        self._forward = Forward(recorded, self.by, sweep, {**start, **dict.fromkeys(self._counters, 0.0)}, {
+            key: self._with_counters(value) if key in ("rtol", "atol") else value for key, value in options.items()})
 
     def _quantity(self, name: Any) -> Node:
         """A result as an expression of states, parameters and time."""
@@ -111,7 +113,7 @@ class Adjoint:
         first = 0
         while first < count:
             most = self._threads * _most_bytes if self._gpu is None else self._most_on_gpu
-            group = max(1, most // (8 * (len(self._recorded.states) + 1) * self._capacity))
+            group = max(1, most // (8 * (len(self._forward.states) + 1) * self._capacity))
             part = slice(first, min(count, first + group))
             run = self._record(rows[part])
             if self._gpu is not None and group > 1 and not run.device.has_samples():  # they took too much of its memory
@@ -140,13 +142,7 @@ class Adjoint:
 
     def _record(self, rows: Array) -> Run:
         """The run of some rows, with all steps as samples."""
-        given = {name: np.ascontiguousarray(rows[:, i]) for i, name in enumerate(self.by)}
-        initial = {name: given.pop(name) for name in self.by if name in self._components.states}
-        options = {key: self._with_counters(value) if key in ("rtol", "atol") else value
-                   for key, value in self._options.items()}
-        return solve(self._recorded, {**self._sweep, **given},
-                     start={**self._start, **initial, **dict.fromkeys(self._counters, 0.0)},
-                     samples={"every": 1, "capacity": self._capacity}, **options)
+        return self._forward.run(self._forward.of_rows(rows), samples={"every": 1, "capacity": self._capacity})
 
     def _check_actions(self, run: Run, done: Array) -> None:
         """Refuses actions at one time in instances that are done, unless all are of stops, in their order, and each

@@ -9,17 +9,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..base import component_kinds as kinds
 from ..base.errors import Error
 from ..base.statuses import first_failure
 from ..kernels.devices import device_names
 from ..models import state_jumps
-from ..models.components import Components, by_component, listed, unknown
-from ..solving.solve import solve
-from ..sweeps.gpu_inputs import is_on_gpu
-from ..sweeps.inputs import by_name, whole
+from ..models.components import Components, listed, unknown
+from ..sweeps.inputs import whole
 from ..symbolic.symbols import time as time_symbol
 from .adjoint import Adjoint
+from .forward import forward_of, refuse_chosen
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -42,13 +40,7 @@ class Batched:
         self.model = model
         self.by = [components.component(one) for one in listed(by)]  #: names of the components that vary
         self.of: list[Component] = [one if one is time_symbol else components.component(one) for one in listed(of)]
-        possible = components.of(("state", "parameter"))
-        for name in self.by:
-            if components.place.get(name, ("",))[0] in kinds.shared:
-                raise Error(f"'{name}' is shared by all instances, and in a batch each has its own value: make it a "
-                            "parameter of the model")
-            if name not in possible:
-                raise unknown(name, possible, "component that a function can depend on")
+        self._forward = forward_of(model, self.by, "by=", sweep, start, options)
         if len(set(self.by)) < len(self.by) or not self.by or not self.of:
             raise Error(f"by= names {self.by!r} and of= {self.of!r}: name at least one component each, none twice in "
                         "by=")
@@ -56,28 +48,15 @@ class Batched:
         for one in self.of:
             if one is not time_symbol and one not in results:
                 raise unknown(str(one), results, "state, accessory or output that can be a result")
-        given = {"sweep": by_component(by_name(sweep, "sweep", "sweep={B: 0.3}"), "sweep="),
-                 "start": by_component(by_name(start, "start", "start={x: 1}"), "start=")}
-        for where, values in given.items():
-            for name, value in values.items():
-                if components.component(name) in self.by:
-                    raise Error(f"'{name}' is in by= and has a value in {where}=: give it in by= alone")
-                if np.ndim(value) != 0:
-                    raise Error(f"'{name}' has several values in {where}=: what is not in by= has one value")
-        for name in ("record", "sensitivities", "size"):
-            if name in options:
-                raise Error(f"a batched function chooses {name}= itself: leave it out")
-        self._initial = [name for name in self.by if name in components.states]
+        refuse_chosen(options, ("record", "sensitivities", "size"), "a batched function")
         self._of_states = all(one is not time_symbol and one in components.states for one in self.of)
-        self._derived = {f"{c}_by_{k}" for c in components.states for k in self.by}
-        self._sweep, self._start, self._options = given["sweep"], given["start"], dict(options)
         samples = self._option("samples", None)
         self.n_samples = None if samples is None else self._count(samples)  #: None without samples
         if self.n_samples is not None and any(one is time_symbol for one in self.of):
             raise Error("of= has the time at which the last phase ended, which has no samples: leave out samples=")
         #: of `vjp`; None for forward sensitivities
-        self.adjoint = Adjoint(model, self.by, self.of, self._sweep, self._start, self._plain_options(),
-                               samples) if adjoint else None
+        self.adjoint = Adjoint(model, self.by, self.of, self._forward.sweep, self._forward.start,
+                               self._forward.plain_options(), samples) if adjoint else None
 
     @staticmethod
     def _count(samples: Any) -> int:
@@ -91,8 +70,9 @@ class Batched:
         return (len(self.of),) if self.n_samples is None else (self.n_samples, len(self.of))
 
     def _option(self, name: str, usual: Any) -> Any:
-        common = self._options.get("options")
-        return self._options.get(name, usual if common is None else getattr(common, name, usual))
+        options = self._forward.options
+        common = options.get("options")
+        return options.get(name, usual if common is None else getattr(common, name, usual))
 
     @property
     def real(self) -> np.dtype[Any]:
@@ -111,30 +91,15 @@ class Batched:
 
     def run(self, values: Any, sensitivities: bool = False) -> Run:
         """The run of sets of values in the rows of an array, of NumPy's or on a GPU."""
-        return self.run_columns([values[:, i] if isinstance(values, np.ndarray) else _contiguous(values[:, i])
-                                 for i in range(len(self.by))], sensitivities)
+        return self._forward.run(self._forward.of_rows(values), sensitivities)
 
     def run_columns(self, columns: Sequence[Any], sensitivities: bool = False) -> Run:
         """The same of one array of values for each component of by=."""
-        given = dict(zip(self.by, columns))
-        options = self._options if sensitivities else self._plain_options()
-        sweep = {**self._sweep, **{name: value for name, value in given.items() if name not in self._initial}}
-        return solve(self.model, sweep, start={**self._start, **{name: given[name] for name in self._initial}},
-                     sensitivities=self.by if sensitivities else None, **options)
+        return self._forward.run(dict(zip(self.by, columns)), sensitivities)
 
     def check_derivatives(self) -> None:
         """Refuses derivatives of a model that jumps where they leave that out."""
         state_jumps.refuse(self.model, "derivative")
-
-    def _plain_options(self) -> dict[str, Any]:
-        """The options of a call without sensitivities."""
-        return {key: self._tolerances_of_states(value) if key in ("rtol", "atol") else value
-                for key, value in self._options.items() if key != "sensitivity_control"}
-
-    def _tolerances_of_states(self, tolerance: Any) -> Any:
-        if not hasattr(tolerance, "items"):
-            return tolerance
-        return {name: value for name, value in tolerance.items() if name not in self._derived}
 
     def _rows(self, values: Values) -> tuple[Array, tuple[int, ...]]:
         array = np.asarray(values)
@@ -218,10 +183,6 @@ class Batched:
 
     def __repr__(self) -> str:
         return f"<myriad_ode.Batched of {self.model!r} by {', '.join(self.by)}>"
-
-
-def _contiguous(column: Any) -> Any:
-    return column.contiguous() if is_on_gpu(column) and hasattr(column, "contiguous") else column
 
 
 def batched(model: AnyModel, *, by: SomeComponents, of: SomeComponents, sweep: ByComponent | None = None,

@@ -61,6 +61,53 @@ def _product() -> Any:
     return forwards
 
 
+def _may_stay(function: FunctionOfValues, platform: str, theta: Any) -> bool:
+    """Whether programs for the platform integrate where the argument is."""
+    import jax
+
+    if theta.dtype != function.real or theta.size == 0 or function.gpu is None:
+        return False
+    try:
+        jax.devices(platform)
+    except RuntimeError:  # the platform is not there
+        return False
+    return compiler.known_compiler() is not None
+
+
+def _solved(function: FunctionOfValues, platform: str, with_jacobian: bool) -> Callable[[Any], Any]:
+    """The values, or values and derivatives, for an argument with any axes of a batch."""
+    import jax
+    import jax.numpy as jnp
+
+    shapes = [function.shape, (*function.shape, len(function.by))][:1 + with_jacobian]
+
+    def on_host(theta: Any) -> Any:
+        def call(rows: Any) -> list[Any]:
+            rows = np.asarray(rows)
+            found = function.with_jacobian(rows) if with_jacobian else [function(rows)]
+            return [array.astype(theta.dtype, copy=False) for array in found]
+
+        # `mapped` makes a batch of what `vmap` asks for.
+        return jax.pure_callback(call, [jax.ShapeDtypeStruct((*theta.shape[:-1], *shape), theta.dtype)
+                                        for shape in shapes], theta)
+
+    def on_gpu(theta: Any) -> Any:
+        *found, status = jax_gpu.call(function, with_jacobian, theta.reshape(-1, len(function.by)))
+        marked = [jnp.where(status >= first_failure, jnp.nan, array) for array in found]  # instances are last
+        return [array.T.reshape(*theta.shape[:-1], *shape) for array, shape in zip(marked, shapes)]
+
+    @jax.jit
+    def by_platform(theta: Any) -> Any:
+        if not _may_stay(function, platform, theta):
+            return on_host(theta)
+        jax_gpu.register("CUDA" if platform == "cuda" else platform)
+        return jax.lax.platform_dependent(theta, **{platform: on_gpu}, default=on_host)
+
+    mapped = jax.custom_batching.custom_vmap(by_platform)
+    mapped.def_vmap(lambda size, is_mapped, theta: (mapped(theta), [True] * len(shapes)))
+    return mapped
+
+
 def jax_function(function: FunctionOfValues, platform: str = "cuda") -> Callable[[Any], Any]:
     """As `Batched.to_jax`. `platform` is JAX's name of that whose arrays are in the memory of a GPU of Myriad's."""
     try:
@@ -71,47 +118,7 @@ def jax_function(function: FunctionOfValues, platform: str = "cuda") -> Callable
 
     n_by = len(function.by)
 
-    def may_stay(theta: Any) -> bool:
-        """Whether programs for the platform integrate where the argument is."""
-        if theta.dtype != function.real or theta.size == 0 or function.gpu is None:
-            return False
-        try:
-            jax.devices(platform)
-        except RuntimeError:  # the platform is not there
-            return False
-        return compiler.known_compiler() is not None
-
-    def solved(with_jacobian: bool) -> Callable[[Any], Any]:
-        """The values, or values and derivatives, for an argument with any axes of a batch."""
-        shapes = [function.shape, (*function.shape, n_by)][:1 + with_jacobian]
-
-        def on_host(theta: Any) -> Any:
-            def call(rows: Any) -> list[Any]:
-                rows = np.asarray(rows)
-                found = function.with_jacobian(rows) if with_jacobian else [function(rows)]
-                return [array.astype(theta.dtype, copy=False) for array in found]
-
-            # `mapped` makes a batch of what `vmap` asks for.
-            return jax.pure_callback(call, [jax.ShapeDtypeStruct((*theta.shape[:-1], *shape), theta.dtype)
-                                            for shape in shapes], theta)
-
-        def on_gpu(theta: Any) -> Any:
-            *found, status = jax_gpu.call(function, with_jacobian, theta.reshape(-1, n_by))
-            marked = [jnp.where(status >= first_failure, jnp.nan, array) for array in found]  # instances are last
-            return [array.T.reshape(*theta.shape[:-1], *shape) for array, shape in zip(marked, shapes)]
-
-        @jax.jit
-        def by_platform(theta: Any) -> Any:
-            if not may_stay(theta):
-                return on_host(theta)
-            jax_gpu.register("CUDA" if platform == "cuda" else platform)
-            return jax.lax.platform_dependent(theta, **{platform: on_gpu}, default=on_host)
-
-        mapped = jax.custom_batching.custom_vmap(by_platform)
-        mapped.def_vmap(lambda size, is_mapped, theta: (mapped(theta), [True] * len(shapes)))
-        return mapped
-
-    values, values_and_jacobian = solved(False), solved(True)
+    values, values_and_jacobian = (_solved(function, platform, with_jacobian) for with_jacobian in (False, True))
 
     def pulled_back(theta: Any, weights: Any) -> Any:
         def on_host(rows: Any, of_rows: Any) -> Any:

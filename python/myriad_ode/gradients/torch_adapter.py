@@ -16,13 +16,13 @@ if TYPE_CHECKING:
     from .protocol import FunctionOfValues
 
 
-def torch_function(function: FunctionOfValues) -> Callable[[Any], Any]:
-    """As `Batched.to_torch`."""
-    try:
-        import torch
-    except ImportError:
-        raise Error("to_torch needs the package torch: `pip install torch`") from None
+def _no_second() -> Error:
+    return Error("the second derivatives of a solution are asked for, which there are not: let an optimiser use "
+                 "gradients alone")
 
+
+def _solver(torch: Any, function: FunctionOfValues) -> Callable[[Any, bool], tuple[Any, Any]]:
+    """What gives values for a tensor, and derivatives if they are wanted."""
     def from_gpu(run: Any, names: list[Any]) -> Any:
         """Results where they are, [instance, sample, name] or [instance, name]; NaN where an instance has failed."""
         found = torch.stack([torch.from_dlpack(run.device[name]) for name in names], dim=-1)
@@ -34,7 +34,6 @@ def torch_function(function: FunctionOfValues) -> Callable[[Any], Any]:
         return is_on_gpu(theta) and theta.dtype == real and theta.device.index == function.gpu
 
     def solved(theta: Any, wanted: bool) -> tuple[Any, Any]:
-        """Values, and derivatives if they are wanted."""
         batch, count = theta.shape[:-1], len(function.by)
         if stays_on_gpu(theta):
             run = function.run(theta.detach().reshape(-1, count), sensitivities=wanted)
@@ -49,10 +48,11 @@ def torch_function(function: FunctionOfValues) -> Callable[[Any], Any]:
         values, slopes = function.with_jacobian(rows)
         return torch.as_tensor(values).to(theta), torch.as_tensor(slopes).to(theta)
 
-    def no_second() -> Error:
-        return Error("the second derivatives of a solution are asked for, which there are not: let an optimiser use "
-                     "gradients alone")
+    return solved
 
+
+def _with_jacobian(torch: Any, function: FunctionOfValues, solved: Callable[[Any, bool], Any]) -> Any:
+    """Of autograd the function whose derivatives are computed with its values."""
     class Solved(torch.autograd.Function):
         """Values and derivatives; to differentiate these is an error, or gives NaN in forward mode."""
 
@@ -69,7 +69,7 @@ def torch_function(function: FunctionOfValues) -> Callable[[Any], Any]:
         @staticmethod
         def backward(ctx: Any, of_values: Any, of_jacobian: Any) -> Any:
             if of_jacobian is not None:
-                raise no_second()
+                raise _no_second()
             if of_values is None:
                 return None
             jacobian, = ctx.saved_tensors
@@ -91,6 +91,11 @@ def torch_function(function: FunctionOfValues) -> Callable[[Any], Any]:
         def vmap(info: Any, in_dims: Any, theta: Any) -> Any:
             return Solved.apply(theta.movedim(in_dims[0], 0)), (0, 0)
 
+    return Solved
+
+
+def _with_adjoint(torch: Any, function: FunctionOfValues, solved: Callable[[Any, bool], Any]) -> Any:
+    """Of autograd the function whose derivatives an adjoint computes."""
     class ByAdjoint(torch.autograd.Function):
         """Values, whose derivatives an adjoint computes where they are asked for."""
 
@@ -124,7 +129,7 @@ def torch_function(function: FunctionOfValues) -> Callable[[Any], Any]:
 
         @staticmethod
         def backward(ctx: Any, _: Any) -> Any:
-            raise no_second()
+            raise _no_second()
 
         @staticmethod
         def vmap(info: Any, in_dims: Any, theta: Any, weights: Any) -> Any:
@@ -132,6 +137,11 @@ def torch_function(function: FunctionOfValues) -> Callable[[Any], Any]:
                               for one, place in zip((theta, weights), in_dims))
             return PulledBack.apply(theta, weights), 0
 
+    return ByAdjoint
+
+
+def _values_alone(torch: Any, solved: Callable[[Any, bool], Any]) -> Any:
+    """Of autograd the function without derivatives."""
     class Values(torch.autograd.Function):
         """Values alone, where no derivatives are wanted."""
 
@@ -147,6 +157,20 @@ def torch_function(function: FunctionOfValues) -> Callable[[Any], Any]:
         def vmap(info: Any, in_dims: Any, theta: Any) -> Any:
             return Values.apply(theta.movedim(in_dims[0], 0)), 0
 
+    return Values
+
+
+def torch_function(function: FunctionOfValues) -> Callable[[Any], Any]:
+    """As `Batched.to_torch`."""
+    try:
+        import torch
+    except ImportError:
+        raise Error("to_torch needs the package torch: `pip install torch`") from None
+
+    solved = _solver(torch, function)
+    with_jacobian, with_adjoint = _with_jacobian(torch, function, solved), _with_adjoint(torch, function, solved)
+    values_alone = _values_alone(torch, solved)
+
     def call(theta: Any) -> Any:
         if theta.ndim == 0 or theta.shape[-1] != len(function.by):
             raise Error(f"the argument has the shape {tuple(theta.shape)}: its last axis has the values of "
@@ -154,7 +178,7 @@ def torch_function(function: FunctionOfValues) -> Callable[[Any], Any]:
         moves = torch.autograd.forward_ad.unpack_dual(theta).tangent is not None if theta.is_floating_point() else False
         if moves or theta.requires_grad and torch.is_grad_enabled():
             function.check_derivatives()
-            return Solved.apply(theta)[0] if function.adjoint is None else ByAdjoint.apply(theta)
-        return Values.apply(theta if theta.is_floating_point() else theta.double())
+            return with_jacobian.apply(theta)[0] if function.adjoint is None else with_adjoint.apply(theta)
+        return values_alone.apply(theta if theta.is_floating_point() else theta.double())
 
     return call

@@ -4,7 +4,7 @@ ensemble in every iteration; what the result is worth."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
@@ -61,7 +61,6 @@ class Fit(Generic[SomeObjective]):
         problem, free = self.problem, self.problem.free
         jacobian = self._jacobian
         self._varied = varied = descent.varied[self.index]
-        self.notes: list[str] = []  #: what to know of the result
         length = np.linalg.norm(jacobian, axis=0)
         #: names of those on which no result that was compared depends
         self.without_influence = [f.name for f, size in zip(free, length) if size == 0]
@@ -77,43 +76,53 @@ class Fit(Generic[SomeObjective]):
         with np.errstate(divide="ignore", invalid="ignore"):
             #: J^T J / variance by the free components themselves, in the order of `problem.names`
             self.fisher_information: Array = information / np.outer(inner, inner) / self.variance
-        determined = length > 0
-        covariance = np.full(information.shape, np.nan)
-        undetermined: list[str] = []
-        if determined.any():
-            unit = jacobian[:, determined] / length[determined]
-            _, singular, vectors = np.linalg.svd(unit, full_matrices=False)
-            rank = int(np.sum(singular > 1e-7 * singular[0]))
-            if rank < determined.sum():
-                names = [f.name for f, d in zip(free, determined) if d]
-                lost = np.linalg.svd(unit)[2][rank:]
-                undetermined = [n for n, w in zip(names, np.abs(lost).max(axis=0)) if w > 0.1]
-            else:
-                inverse = (vectors.T / singular**2) @ vectors * self.variance
-                covariance[np.ix_(determined, determined)] = inverse / np.outer(length[determined], length[determined])
+        covariance, undetermined = self._inverse(length)
         self._deviations = np.sqrt(np.diag(covariance))  # of what varies
         self.covariance: Array = covariance * np.outer(inner, inner)  #: of the free components; NaN: not determined
         self.standard_errors = _by_name(problem, np.sqrt(np.diag(self.covariance)))  #: by name
+        self.notes: list[str] = self._notes(undetermined, degrees)  #: what to know of the result
+
+    def _inverse(self, length: Array) -> tuple[Array, list[str]]:
+        """The covariance of what varies, from the columns of the Jacobian and their length; and the names of those that
+        the data determine in combinations alone."""
+        free, jacobian, determined = self.problem.free, self._jacobian, length > 0
+        covariance = np.full((len(free), len(free)), np.nan)
+        if not determined.any():
+            return covariance, []
+        unit = jacobian[:, determined] / length[determined]
+        _, singular, vectors = np.linalg.svd(unit, full_matrices=False)
+        rank = int(np.sum(singular > 1e-7 * singular[0]))
+        if rank < determined.sum():
+            names = [f.name for f, d in zip(free, determined) if d]
+            lost = np.linalg.svd(unit)[2][rank:]
+            return covariance, [n for n, w in zip(names, np.abs(lost).max(axis=0)) if w > 0.1]
+        inverse = (vectors.T / singular**2) @ vectors * self.variance
+        covariance[np.ix_(determined, determined)] = inverse / np.outer(length[determined], length[determined])
+        return covariance, []
+
+    def _notes(self, undetermined: Sequence[str], degrees: int) -> list[str]:
+        notes: list[str] = []
         if self.without_influence:
-            self.notes.append(f"no result that is compared with data depends on {', '.join(self.without_influence)}: "
-                              "leave out of free=, or compare something else")
+            notes.append(f"no result that is compared with data depends on {', '.join(self.without_influence)}: "
+                         "leave out of free=, or compare something else")
         if undetermined:
-            self.notes.append(f"the data determine combinations of {', '.join(undetermined)} alone, and not each of "
-                              "them: fix one, or add data")
+            notes.append(f"the data determine combinations of {', '.join(undetermined)} alone, and not each of "
+                         "them: fix one, or add data")
         if self.at_bound:
-            self.notes.append(f"the fit ended at a bound of {', '.join(self.at_bound)}, where confidence intervals do "
-                              "not hold: widen the bounds, or think why")
+            notes.append(f"the fit ended at a bound of {', '.join(self.at_bound)}, where confidence intervals do "
+                         "not hold: widen the bounds, or think why")
         interrupted = self.status.count("interrupted")
         if interrupted:
-            self.notes.append(f"Ctrl-C ended the fit while {interrupted} of {len(self.status)} starts were on their "
-                              "way: starts=fit.values goes on from here")
+            notes.append(f"Ctrl-C ended the fit while {interrupted} of {len(self.status)} starts were on their "
+                         "way: starts=fit.values goes on from here")
         elif self.status[self.index] != "converged":
-            self.notes.append("the best start was still on its way: give more iterations=")
+            notes.append("the best start was still on its way: give more iterations=")
         failed = self.status.count("failed")
         if failed:
-            self.notes.append(f"{failed} of {len(self.status)} starts had no solution up to the last time of the data")
-        if degrees <= 0 and not problem.has_sigma:
-            self.notes.append("there are no more data than free components: give sigma= for confidence intervals")
+            notes.append(f"{failed} of {len(self.status)} starts had no solution up to the last time of the data")
+        if degrees <= 0 and not self.problem.has_sigma:
+            notes.append("there are no more data than free components: give sigma= for confidence intervals")
+        return notes
 
     def _width(self, level: float) -> float:
         """Half the width of a confidence interval, in standard errors."""

@@ -8,14 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..base import component_kinds as kinds
 from ..base.errors import Error
 from ..base.statuses import status_names
 from ..gradients.adjoint import Adjoint
+from ..gradients.forward import forward_of, refuse_chosen, tolerances
 from ..models.components import Components, by_component, unknown
-from ..solving.core_options import per_state
-from ..solving.options import Options
-from ..solving.solve import solve
 from ..sweeps.inputs import by_name, real
 from ..symbolic.symbols import time
 from .objective import Free, Objective
@@ -45,27 +42,9 @@ class LeastSquares(Objective):
             by_name(free, "free", "free={k: (0.1, 10, \"log\")}"), "free=").items()])
         if not self.free:
             raise Error("free= names no component: give those to fit with their bounds, as in free={k: (0.1, 10)}")
-        possible = components.of(("state", "parameter"))
-        for name in self.names:
-            if components.place.get(name, ("",))[0] in kinds.shared:
-                raise Error(f"'{name}' is shared by all instances, and each start of a fit has its own value: make it "
-                            "a parameter of the model")
-            if name not in possible:
-                raise unknown(name, possible, "component that a fit can determine")
-        self._sweep = by_component(by_name(sweep, "sweep", "sweep={B: 0.3}"), "sweep=")
-        self._start = by_component(by_name(start, "start", "start={x: 1}"), "start=")
-        for name in self.names:
-            if name in self._sweep or name in self._start:
-                raise Error(f"'{name}' is free and has a value: give it in free= alone")
-        for where, values in (("sweep", self._sweep), ("start", self._start)):
-            for name, value in values.items():
-                if np.ndim(value) != 0:
-                    raise Error(f"'{name}' has several values in {where}=: a fit has one of each component that is not "
-                                "free")
-        for name in ("samples", "record", "phases", "sensitivities", "size"):
-            if name in options:
-                raise Error(f"a fit chooses {name}= itself: leave it out")
-        self._options = {**options, "atol": self._tolerances(options)}
+        refuse_chosen(options, ("samples", "record", "phases", "sensitivities", "size"), "a fit")
+        self._forward = forward_of(model, self.names, "free=", sweep, start, {
+            **options, "atol": tolerances(components, options, {f.name: f.size for f in self.free})})
         self._begin = real(begin, "begin")
         self._read(data, sigma)
         self._adjoint = self._make_adjoint() if adjoint else None
@@ -75,35 +54,37 @@ class LeastSquares(Objective):
         return self.model
 
     def _make_adjoint(self) -> Adjoint:
-        return Adjoint(self.model, self.names, list(self.data), self._sweep, self._start,
-                       {**self._plain_options(), "time": (self._begin, float(self.times[-1]))}, self.times)
-
-    def _plain_options(self) -> dict[str, Any]:
-        """The options of a call without sensitivities."""
-        return {**self._options, "atol": {c: t for c, t in self._options["atol"].items()
-                                          if c in self._components.states}}
-
-    def _tolerances(self, options: Mapping[str, Any]) -> dict[str, float]:
-        """Absolute tolerances of states, and of their derivatives, whose product with a free component is to be as
-        accurate as the state."""
-        known = options.get("options") or Options()
-        given = options.get("atol", known.atol)
-        states = self._components.states
-        values = per_state(given, self._components, "atol", len(states))
-        of_states = dict(zip(states, values * len(states) if len(values) == 1 else values))
-        return {**of_states, **{f"{c}_by_{f.name}": tolerance / max(1.0, abs(f.least), abs(f.most))
-                                for f in self.free for c, tolerance in of_states.items()}}
+        return Adjoint(self.model, self.names, list(self.data), self._forward.sweep, self._forward.start,
+                       {**self._forward.plain_options(), "time": (self._begin, float(self.times[-1]))}, self.times)
 
     def _read(self, data: Any, sigma: Any) -> None:
         """Takes times, values and their standard deviations."""
+        columns = self._columns(data)
+        times = columns.pop("t", None)
+        if times is None:
+            raise Error("data has no times: give them as \"t\"")
+        if not columns:
+            raise Error("data has times alone: give values by the names of states or outputs")
+        self._check(times, columns)
+        self.data = columns
+        self.times, where = np.unique(times, return_inverse=True)
+        there = {name: np.flatnonzero(~np.isnan(values)) for name, values in columns.items()}
+        self._where = {name: where[rows] for name, rows in there.items()}
+        #: (name, time) of each residual
+        self.labels = [(name, float(times[i])) for name, rows in there.items() for i in rows]
+        self.has_sigma = sigma is not None
+        self._sigma = np.concatenate(self._deviations(sigma, there, times.shape))
+        self._observed = np.concatenate([columns[name][rows] for name, rows in there.items()])
+
+    def _columns(self, data: Any) -> dict[str, Array]:
+        """Data by the names of components, times as "t"."""
         if not hasattr(data, "items"):
             raise Error(f"data is a {type(data).__name__}: give a dict or a data frame with times and values by name, "
                         "as in {\"t\": times, x: values}")
-        components = self._components
-        columns = {}
+        columns: dict[str, Array] = {}
         for key, values in data.items():
-            is_time = key is time or isinstance(key, str) and key in _time_names and key not in components.place
-            name = "t" if is_time else components.component(key)
+            is_time = key is time or isinstance(key, str) and key in _time_names and key not in self._components.place
+            name = "t" if is_time else self._components.component(key)
             if name in columns:
                 raise Error(f"data has '{name}' twice: give it once")
             try:
@@ -111,12 +92,11 @@ class LeastSquares(Objective):
             except (TypeError, ValueError):
                 raise Error(f"data of '{name}' has values that are no numbers: give numbers, NaN where there is none"
                             ) from None
-        times = columns.pop("t", None)
-        if times is None:
-            raise Error("data has no times: give them as \"t\"")
-        if not columns:
-            raise Error("data has times alone: give values by the names of states or outputs")
-        possible = [*components.states, *components.outputs]
+        return columns
+
+    def _check(self, times: Array, columns: Mapping[str, Array]) -> None:
+        """Refuses data that the model has nothing to compare with."""
+        possible = [*self._components.states, *self._components.outputs]
         for name, values in columns.items():
             if name not in possible:
                 raise unknown(name, possible, "state or output of the model, which data are compared with")
@@ -131,46 +111,36 @@ class LeastSquares(Objective):
                         "there on, or begin=")
         if not (times > self._begin).any():
             raise Error(f"all times of data are {self._begin:g}, where the model begins: give later ones too")
-        self.data = columns
-        self.times, where = np.unique(times, return_inverse=True)
-        self._there = {name: np.flatnonzero(~np.isnan(values)) for name, values in columns.items()}
-        self._where = {name: where[there] for name, there in self._there.items()}
-        #: (name, time) of each residual
-        self.labels = [(name, float(times[i])) for name, there in self._there.items() for i in there]
-        self.has_sigma = sigma is not None
-        given = by_component(sigma, "sigma=") if hasattr(sigma, "items") else dict.fromkeys(columns, sigma)
+
+    def _deviations(self, sigma: Any, there: Mapping[str, Array], shape: tuple[int, ...]) -> list[Array]:
+        """The standard deviations of the values that are there, for each quantity; 1 where none are known."""
+        given = by_component(sigma, "sigma=") if hasattr(sigma, "items") else dict.fromkeys(there, sigma)
         for name in given:
-            if components.component(name) not in columns:
-                raise unknown(components.component(name), list(columns), "quantity in data")
+            if self._components.component(name) not in there:
+                raise unknown(self._components.component(name), list(there), "quantity in data")
         deviations = []
-        for name, there in self._there.items():
+        for name, rows in there.items():
             of_name = given.get(name)
-            if of_name is None and self.has_sigma:
+            if of_name is None and sigma is not None:
                 raise Error(f"sigma= has none for '{name}': give the standard deviation of each quantity in data")
             values = np.asarray(1.0 if of_name is None else of_name, float)
-            if values.ndim > 1 or values.ndim == 1 and values.shape != times.shape:
-                raise Error(f"sigma of '{name}' has {values.size} values for {times.size} times: give one, or one for "
+            if values.ndim > 1 or values.ndim == 1 and values.shape != shape:
+                raise Error(f"sigma of '{name}' has {values.size} values for {shape[0]} times: give one, or one for "
                             "each time")
-            values = np.broadcast_to(values, times.shape)[there]
+            values = np.broadcast_to(values, shape)[rows]
             if not (np.isfinite(values) & (values > 0)).all():
                 raise Error(f"sigma of '{name}' has values that are not positive: give standard deviations")
             deviations.append(values)
-        self._sigma = np.concatenate(deviations)
-        self._observed = np.concatenate([columns[name][there] for name, there in self._there.items()])
+        return deviations
 
     def run(self, values: Values, sensitivities: bool = True) -> Run:
         """The run of one set of values, or of several in rows."""
-        sets = np.atleast_2d(self._sets(values))
-        given = {name: np.ascontiguousarray(sets[:, i]) for i, name in enumerate(self.names)}
         states = [name for name in self.data if name in self._components.states]
         samples: dict[str, Any] = {"times": self.times}
         if len(states) == len(self.data):
             samples["states"] = states
-        initial = {name: value for name, value in given.items() if name in self._components.states}
-        options = self._options if sensitivities else self._plain_options()
-        return solve(self.model, {**self._sweep, **{n: v for n, v in given.items() if n not in initial}},
-                     start={**self._start, **initial}, time=(self._begin, float(self.times[-1])), samples=samples,
-                     sensitivities=self.names if sensitivities else None, **options)
+        return self._forward.run(self._forward.of_rows(np.atleast_2d(self._sets(values))), sensitivities,
+                                 time=(self._begin, float(self.times[-1])), samples=samples)
 
     def evaluate(self, values: Values) -> tuple[Array, Array, Array]:
         """Of sets in rows the loss, residuals, [set, residual], and their derivatives by the free components, one more

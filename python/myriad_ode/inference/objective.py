@@ -35,6 +35,11 @@ class Free:
             raise Error(f"the lower bound of '{name}' is {self.least:g}, and its logarithm varies: give a positive "
                         "one, or leave out \"log\"")
 
+    @property
+    def size(self) -> float:
+        """What it is at the most, 1 or more."""
+        return max(1.0, abs(self.least), abs(self.most))
+
 
 class Objective:
     """What a fit minimises, as a function of the values of the free components, in the order of `names`: one set, or

@@ -34,18 +34,24 @@ def name_of(key: Component) -> str:
     raise Error(f"{key!r} is no component of a model: give a symbol, such as x, or its name, such as \"x\"")
 
 
+def short_name(name: str) -> str:
+    """A component's name without its kind, as studies and the core have it in "state.x"."""
+    return name.rpartition(".")[2]
+
+
 def listed(chosen: SomeComponents) -> list[Any]:
     """One component or several, as a list."""
     return [chosen] if isinstance(chosen, (str, Node)) else list(chosen)
 
 
-def by_component(values: ByComponent, what: str) -> dict[str, Any]:
-    """Values by the names of components; refuses one that is given by its symbol and by its name."""
+def by_component(values: ByComponent, what: str, called: Callable[[Component], str] = name_of) -> dict[str, Any]:
+    """Values by the names of components, or by what else they are called; refuses one that is given by its symbol and
+    by its name."""
     named: dict[str, Any] = {}
     for key, value in spread(values, what, None).items():
-        name = name_of(key)
+        name = called(key)
         if name in named:
-            raise Error(f"'{name}' is given twice in {what}: give it once")
+            raise Error(f"'{short_name(name)}' is given twice in {what}: give it once")
         named[name] = value
     return named
 

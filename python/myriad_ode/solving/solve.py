@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import time as clock
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,7 +28,7 @@ from ..sweeps.gpu_inputs import DeviceInput
 from ..sweeps.inputs import numbers
 from ..sweeps.sweep import Sweep
 from .core_options import finish_options, longest_step, make_options, options_of, takes_options
-from .gather import fill, gather, names_given
+from .gather import fill, gather, given_values
 from .options import Options, SolveArguments
 from .progress import ProgressDisplay
 from .sensitivity_options import start_derivatives, with_derivatives
@@ -40,10 +40,113 @@ if TYPE_CHECKING:
     from ..symbolic.types import ByComponent, Precision, Progress, SomeComponents, Values
 
 
-def _inputs(components: Components, given: Mapping[str, Any]) -> dict[str, Any]:
-    """What results tell of the inputs."""
-    return {name: array for name, array in given.items() if components.place[name][0] in (
-        "state", "parameter", *kinds.shared)}
+class _Call:
+    """A call of `solve`: what it computes, then its inputs and options, and at last what it has computed."""
+
+    ensemble: Any
+    report: Any
+    kernel: Any
+    failure: BaseException | None
+
+    def __init__(self, model: AnyModel, method: Method | None, control: Control | Sequence[Control],
+                 precision: Precision, sensitivities: SomeComponents | None, sensitivity_control: bool) -> None:
+        if precision not in ("double", "float"):
+            raise Error(f"precision is {precision!r}: give \"double\" or \"float\"")
+        if not isinstance(model, AnyModel):
+            raise Error(f"the model is a {type(model).__name__}: make it by my.model(...), as in "
+                        "my.solve(my.model({x: v, v: -x}), ...)")
+        self.method, self.control, self.precision = default if method is None else method, control, precision
+        self.real = np.dtype("f8" if precision == "double" else "f4")
+        if isinstance(model, WithSensitivities) and sensitivities is None and not sensitivity_control:
+            model = with_sensitivities(model.model, model.by, control=False)
+        self.model: AnyModel = (prepared(model) if sensitivities is None else
+                                with_sensitivities(model, sensitivities, sensitivity_control))
+        self.components = Components(self.model)
+
+    def gather(self, sweep: Sweep | ByComponent | None, start: ByComponent | None, time: tuple[Values, Values] | None,
+               size: int | None, options: Options) -> None:
+        """Takes inputs and options, and refuses those that do not fit."""
+        values = given_values(self.components, sweep, start)
+        if isinstance(self.model, WithSensitivities):
+            self.components.defaults = {**self.components.defaults, **start_derivatives(self.model, values)}
+        self.sweep = sweep
+        self.given, self.domain, self.count = gather(self.components, values, sweep, time, size)
+        if isinstance(self.model, WithSensitivities):
+            options = with_derivatives(self.model, options, self.components)
+        self.options = options
+        method_type(self.method, self.control, options.samples is not None)  # refuses what does not exist
+        if self.method in fixed_step and options.step is None:
+            raise Error(f"{self.method} takes fixed steps: give step=")
+        self.core_options, self.recorded, self.sampled = make_options(self.components, self.count, options)
+
+    def integrate(self, devices: Sequence[str], interpreted: bool | None, tolerance_scale: Values | None,
+                  make_consistent: bool, progress: Progress) -> None:
+        """Gets the kernels, fills the ensemble, and integrates it."""
+        kernels = [kernel_for(device, self.model, self.components, self.method, self.control,
+                              self.options.samples is not None, self.precision, interpreted) for device in devices]
+        self.kernel, names = kernels[0]
+        finish_options(self.core_options, self.options, self.components, len(names["state"]), len(names["event"]))
+        kind: Any = _core.Ensemble64 if self.precision == "double" else _core.Ensemble32
+        display = ProgressDisplay(progress)
+        try:
+            self.ensemble = kind(self.kernel.library, names, self.count)
+            fill(self.ensemble, self.components, self.given, self.domain, names, self.real)
+            takes_from_gpu = any(isinstance(array, DeviceInput) for array in self.given.values())
+            if takes_from_gpu and devices[0].startswith("cuda"):
+                _core.wait_for_gpu(int(devices[0].partition(":")[2]))  # for what other libraries do there
+            if tolerance_scale is not None:
+                self._scale_tolerances(tolerance_scale)
+            # kernels see to it after `initialise`, without which equations are not what they will be
+            after_hook = self.model.mass_matrix is not None and bool(self.model.initialise)
+            if make_consistent and not after_hook:
+                if takes_from_gpu:
+                    raise Error("make_consistent=True changes arrays on the host, and some are on a GPU: copy them to "
+                                "the host")
+                _core.make_consistent(self.kernel.library, self.ensemble)
+            self.report, self.failure = _core.solve([(k.library, d) for (k, _), d in zip(kernels, devices)],
+                                                    self.ensemble, self.core_options, display if progress else None)
+        except Error as error:
+            raise with_event_names(error, self.components.event_names) from None
+        finally:
+            display.close()
+
+    def _scale_tolerances(self, given: Values) -> None:
+        scale = numbers(given, "tolerance_scale")
+        if isinstance(scale, DeviceInput):
+            raise Error("'tolerance_scale' is on a GPU: copy it to the host")
+        if scale.ndim and len(scale) != self.count:
+            raise Error(f"'tolerance_scale' has {len(scale)} values for {self.count} instances: give one for each")
+        self.ensemble.array("tolerance_scale")[...] = scale
+
+    def integrate_none(self) -> None:
+        """The same for a sweep without instances."""
+        record, samples = self.core_options.record, self.core_options.samples
+        self.ensemble = EmptyEnsemble(self.components, self.given, self.real, samples.capacity)
+        self.report = EmptyReport(max(self.core_options.phases - record.from_phase, 0), self.real)
+        self.kernel, self.failure = no_kernel, None
+
+    def run(self, seconds: float, notes: Sequence[str] = ()) -> Run:
+        """What has been computed, in so many seconds. Raises what ended the computation."""
+        inputs = {name: array for name, array in self.given.items()
+                  if self.components.place[name][0] in ("state", "parameter", *kinds.shared)}
+        run = Run(self.components, self.ensemble, self.report, self.kernel, self.sweep, inputs, self.recorded,
+                  self.sampled, seconds, self.core_options.record.from_phase, notes)
+        if isinstance(self.model, WithSensitivities) and self.count and (undefined := note(run)) is not None:
+            run.report.notes.append(undefined)
+        if isinstance(self.failure, KeyboardInterrupt):
+            raise Interrupted(run) from None
+        if self.failure is not None:
+            raise self.failure
+        return run
+
+
+def _devices(device: str | Sequence[str], interpreted: bool | None) -> tuple[list[str], str | None]:
+    """The devices of a call, and a note if there is no GPU for "auto"."""
+    devices, no_gpu = device_names(device, interpreted)
+    if len(devices) > 1 and not all(d.startswith("cuda") for d in devices):
+        raise Error(f"device is {device!r}, and several devices of a call must be GPUs: name GPUs alone, or use "
+                    "my.study, which uses CPU and GPUs together")
+    return devices, no_gpu
 
 
 @takes_options(SolveArguments)
@@ -95,77 +198,13 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
 
     The options:"""
     begin = clock.perf_counter()
-    given_options = options_of(options, others, solve)
-    if precision not in ("double", "float"):
-        raise Error(f"precision is {precision!r}: give \"double\" or \"float\"")
-    devices, no_gpu = device_names(device, interpreted)
-    on_gpu = devices[0].startswith("cuda")
-    if len(devices) > 1 and not all(d.startswith("cuda") for d in devices):
-        raise Error(f"device is {device!r}, and several devices of a call must be GPUs: name GPUs alone, or use "
-                    "my.study, which uses CPU and GPUs together")
-    if not isinstance(model, AnyModel):
-        raise Error(f"the model is a {type(model).__name__}: make it by my.model(...), as in "
-                    "my.solve(my.model({x: v, v: -x}), ...)")
-    chosen = default if method is None else method
-    if isinstance(model, WithSensitivities) and sensitivities is None and not sensitivity_control:
-        model = with_sensitivities(model.model, model.by, control=False)
-    model = prepared(model) if sensitivities is None else with_sensitivities(model, sensitivities, sensitivity_control)
-    components = Components(model)
-    if isinstance(model, WithSensitivities):
-        components.defaults = {**components.defaults, **start_derivatives(
-            model, names_given(components, sweep, start))}
-    given, domain, count = gather(components, sweep, start, time, size)
-    if isinstance(model, WithSensitivities):
-        given_options = with_derivatives(model, given_options, components)
-    samples = given_options.samples is not None
-    method_type(chosen, control, samples)  # refuses what does not exist
-    if chosen in fixed_step and given_options.step is None:
-        raise Error(f"{chosen} takes fixed steps: give step=")
-    core_options, recorded, sampled = make_options(components, count, given_options)
-    if count == 0:
-        real = np.dtype("f8" if precision == "double" else "f4")
-        from_phase = core_options.record.from_phase
-        return Run(components, EmptyEnsemble(components, given, real, core_options.samples.capacity),
-                   EmptyReport(max(core_options.phases - from_phase, 0), real), no_kernel, sweep,
-                   _inputs(components, given), recorded, sampled, clock.perf_counter() - begin, from_phase)
-    kernels = [kernel_for(d, model, components, chosen, control, samples, precision, interpreted)
-               for d in devices]
-    kernel, names = kernels[0]
-    finish_options(core_options, given_options, components, len(names["state"]), len(names["event"]))
-    kind: Any = _core.Ensemble64 if precision == "double" else _core.Ensemble32
-    display = ProgressDisplay(progress)
-    try:
-        ensemble = kind(kernel.library, names, count)
-        fill(ensemble, components, given, domain, names, np.dtype("f8" if precision == "double" else "f4"))
-        if on_gpu and any(isinstance(array, DeviceInput) for array in given.values()):
-            _core.wait_for_gpu(int(devices[0].partition(":")[2]))  # for what other libraries do there
-        if tolerance_scale is not None:
-            scale = numbers(tolerance_scale, "tolerance_scale")
-            if isinstance(scale, DeviceInput):
-                raise Error("'tolerance_scale' is on a GPU: copy it to the host")
-            if scale.ndim and len(scale) != count:
-                raise Error(f"'tolerance_scale' has {len(scale)} values for {count} instances: give one for each")
-            ensemble.array("tolerance_scale")[...] = scale
-        # kernels see to it after `initialise`, without which equations are not what they will be
-        after_hook = model.mass_matrix is not None and bool(model.initialise)
-        if make_consistent and not after_hook:
-            if any(isinstance(array, DeviceInput) for array in given.values()):
-                raise Error("make_consistent=True changes arrays on the host, and some are on a GPU: copy them to the "
-                            "host")
-            _core.make_consistent(kernel.library, ensemble)
-        report, failure = _core.solve([(k.library, d) for (k, _), d in zip(kernels, devices)], ensemble,
-                                      core_options, display if progress else None)
-    except Error as error:
-        raise with_event_names(error, components.event_names) from None
-    finally:
-        display.close()
-    notes = [one for one in (no_gpu, time_jumps.note(model, longest_step(given_options)), note_on(model)) if one]
-    run = Run(components, ensemble, report, kernel, sweep, _inputs(components, given), recorded, sampled,
-              clock.perf_counter() - begin, core_options.record.from_phase, notes)
-    if isinstance(model, WithSensitivities) and (undefined := note(run)) is not None:
-        run.report.notes.append(undefined)
-    if failure is not None:
-        if isinstance(failure, KeyboardInterrupt):
-            raise Interrupted(run) from None
-        raise failure
-    return run
+    given = options_of(options, others, solve)
+    devices, no_gpu = _devices(device, interpreted)
+    call = _Call(model, method, control, precision, sensitivities, sensitivity_control)
+    call.gather(sweep, start, time, size, given)
+    if call.count == 0:
+        call.integrate_none()
+        return call.run(clock.perf_counter() - begin)
+    call.integrate(devices, interpreted, tolerance_scale, make_consistent, progress)
+    notes = (no_gpu, time_jumps.note(call.model, longest_step(call.options)), note_on(call.model))
+    return call.run(clock.perf_counter() - begin, [one for one in notes if one])

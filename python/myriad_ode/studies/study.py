@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from .. import _core
-from ..base.component_kinds import recorded as recorded_kinds
+from ..base.component_kinds import recorded as recorded_kinds, shared as shared_kinds
 from ..base.core_words import in_words, with_event_names
 from ..base.errors import Error
 from ..kernels import nvrtc
@@ -21,21 +21,20 @@ from ..kernels.choose import kernel_for
 from ..kernels.devices import device_names
 from ..models import time_jumps
 from ..models.any_model import AnyModel
-from ..models.components import Components, listed, name_of, unknown
+from ..models.components import Components, listed, short_name
 from ..models.methods import default, fixed_step, method_type
 from ..models.once_per_phase import prepared
 from ..models.sensitivities import note_on
 from ..models.whole_numbers import check_whole_numbers
 from ..results.run import Interrupted
 from ..solving.core_options import finish_options, longest_step, make_options, options_of, takes_options
-from ..solving.gather import ends_of, refuse_missing
+from ..solving.gather import full_name, gather_axes, refuse_missing, refuse_shared
 from ..solving.options import Options, StudyArguments
 from ..solving.progress import ProgressDisplay
-from ..sweeps.inputs import by_name, numbers, only, path_text, real, text, whole
+from ..sweeps.inputs import by_name, only, path_text, real, text, whole
 from ..sweeps.sweep import Sweep
-from ..symbolic.axes import Axis, Random, drawn
-from ..symbolic.expression import Node
-from ..symbolic.symbols import t_begin, t_end, time as time_symbol
+from ..symbolic.axes import Axis, Random
+from ..symbolic.symbols import time as time_symbol
 from .executed_run import ExecutedRun
 from .reduce import Reduction
 from .result import StudyResult
@@ -45,16 +44,11 @@ if TYPE_CHECKING:
 
     from ..kernels.compiler import Kernel
     from ..models.methods import Control, Method
-    from ..symbolic.types import ByComponent, Component, Path, Precision, Progress, SomeComponents
+    from ..symbolic.types import ByComponent, Path, Precision, Progress, SomeComponents
 
 __all__ = ["Study", "study"]
 
 _keep_choices = ("end", "records", "samples", "random", "status", "work")
-
-
-def _time_name(key: object) -> str | None:
-    """The names of the ends of the time domain, or None."""
-    return {t_begin: "t_begin", t_end: "t_end"}.get(key) if isinstance(key, Node) else None
 
 
 class Study:
@@ -116,128 +110,76 @@ class Study:
                     raise Error(f"reduce= has {reduction!r}: give reductions, as in "
                                 "[my.reduce.mean(\"x_end\")]")
                 made.reduce(reduction.core())
-            for key, unit in by_name(units, "units", "units={x: \"m\"}").items():
-                name = "t" if key is time_symbol else self._full_name(key)
-                made.unit(name, text(unit, f"the unit of '{name}'"))
-            if title:
-                made.title(text(title, "the title"))
-            values = np.array(list(components.tables.values()), float)
-            made.note("model", hashlib.sha256(model.source()[0].encode() + values.tobytes()).hexdigest()[:32])
-            for key, value in by_name(notes, "notes", "notes={\"who\": \"...\"}").items():
-                key = text(key, "the key of a note")
-                made.note(f"user.{key}", text(value, f"the note '{key}'"))
+            self._describe(made, components, model, title, units, notes)
         except Error as error:
             raise with_event_names(error, components.event_names) from None
 
-    def _full_name(self, key: Component) -> str:
-        """The core's name of a component."""
-        if (of_time := _time_name(key)) is not None:
-            return of_time
-        name = self._components.component(key)
-        if name in self._components.place:
-            return f"{self._components.place[name][0]}.{name}"
-        if name in ("t_begin", "t_end"):
-            return name
-        known = [n for n in self._components.place if n not in self._components.tables]
-        raise unknown(name, known, "component of the model")
-
-    def _refuse_twice(self, given: Iterable[Component], what: str) -> set[str]:
-        """Refuses a component that is given by its symbol and by its name; returns the names of all."""
-        names = [self._full_name(key) for key in given]
-        for name in names:
-            if names.count(name) > 1:
-                raise Error(f"'{name.partition('.')[2] or name}' is given twice in {what}: give it once")
-        return set(names)
+    def _describe(self, made: _core.Study, components: Components, model: AnyModel, title: str,
+                  units: Mapping[Any, str] | None, notes: Mapping[str, object] | None) -> None:
+        """What tells the study from others."""
+        for key, unit in by_name(units, "units", "units={x: \"m\"}").items():
+            name = "t" if key is time_symbol else full_name(components, key)
+            made.unit(name, text(unit, f"the unit of '{name}'"))
+        if title:
+            made.title(text(title, "the title"))
+        values = np.array(list(components.tables.values()), float)
+        made.note("model", hashlib.sha256(model.source()[0].encode() + values.tobytes()).hexdigest()[:32])
+        for key, value in by_name(notes, "notes", "notes={\"who\": \"...\"}").items():
+            key = text(key, "the key of a note")
+            made.note(f"user.{key}", text(value, f"the note '{key}'"))
 
     def _set_instances(self, made: _core.Study, components: Components, sweep: Sweep | ByComponent | None,
                        start: ByComponent | None, time: tuple[Any, Any] | None, draws: int | None) -> None:
         """Axes, random values and values for all instances."""
-        begin, end = ends_of(time)
-        given = dict(by_name(start, "start", "start={x: 1, v: 0}"))
-        self._refuse_twice(given, "start=")
-        for name, value in (("t_begin", begin), ("t_end", end)):
-            if value is not None:
-                given[t_begin if name == "t_begin" else t_end] = value
-        on_grid: list[list[tuple[Any, Any]]] = []
-        constants = {}
-        if isinstance(sweep, Sweep):
-            on_grid = [[(n, v) for n, (a, v) in sweep.coordinates.items() if a == name] for name, _ in sweep.axes]
-            constants.update(sweep.constants)
-        else:
-            swept = by_name(sweep, "the sweep", "{k: my.linspace(0, 1, 100)}")
-            twice = self._refuse_twice(swept, "the sweep") & self._refuse_twice(given, "start=")
-            for name in twice & {"t_begin", "t_end"}:
-                raise Error(f"'{name}' is given in the sweep and in time=: give None there")
-            for name in twice:
-                raise Error(f"'{name.partition('.')[2]}' is given in the sweep and in start=: give it once")
-            given = {**swept, **given}
-        together = []
-        for key, value in given.items():
-            name = _time_name(key) or name_of(key)
-            if name in constants or name in [n for axis in on_grid for n, _ in axis]:
-                if name in ("t_begin", "t_end") and name not in components.place:
-                    raise Error(f"'{name}' is given in the sweep and in time=: give None there")
-                raise Error(f"'{name}' is given in the sweep and in start=: give it once")
-            value = drawn(value)
-            if not isinstance(value, Axis):
-                value = numbers(value, name)
-            (constants.__setitem__(key, value) if value.ndim == 0 else together.append((key, value)))
-        if together and isinstance(sweep, Sweep):
-            raise Error(f"'{self._full_name(together[0][0])}' has {len(together[0][1])} values beside a grid: make it "
-                        "an axis of the grid, as in my.grid({x: ...})")
-        if len({len(v) for _, v in together}) > 1:
-            (first, a), (other, b) = next((p, q) for p in together for q in together if len(p[1]) != len(q[1]))
-            raise Error(f"'{self._full_name(first)}' has {len(a)} values and '{self._full_name(other)}' has {len(b)}: "
-                        "give equally many, or combine all with all by my.grid(...)")
-        axes = [*on_grid, *([together] if together else [])]
-        all_names = {name_of(k) for axis in axes for k, _ in axis if _time_name(k) is None}
-        all_names |= {name_of(k) for k in constants if _time_name(k) is None}
-        for key in (*constants, *(k for axis in axes for k, _ in axis)):
-            self._full_name(key)  # one that there is not, before one that is missing
+        axes, constants = gather_axes(components, sweep, start, time)
+        varying = [*(name for axis in axes for name in axis),
+                   *(name for name, value in constants.items() if isinstance(value, Random))]
+        given = {short_name(name) for name in (*constants, *varying)}
         for name in components.generated:
-            if name in all_names:
+            if name in given:
                 raise Error(f"'{name}' is given to the study, and generate= of the model sets it: give it once")
-        refuse_missing(components, dict.fromkeys([*components.defaults, *components.generated, *all_names]))
+        refuse_missing(components, {*components.defaults, *components.generated, *given})
         if components.generated and not axes and draws is None:
             raise Error("the model generates its instances, and nothing says how many: give draws=")
-        varying = [k for axis in axes for k, _ in axis] + [k for k, v in constants.items() if isinstance(v, Random)]
-        self._own_domains = any(self._full_name(k) in ("t_begin", "t_end") for k in varying)
+        self._own_domains = not {"t_begin", "t_end"}.isdisjoint(varying)
         for name, value in self._defaults(components, constants, varying).items():
-            if name not in all_names:
-                made.set(self._full_name(name), value)
-        empty = next((k for axis in axes for k, v in axis if len(v) == 0), None)
-        if empty is not None:
-            raise Error(f"'{_time_name(empty) or name_of(empty)}' has no values: a study has one instance or more; "
-                        "my.solve takes a sweep of none")
+            if name not in given:
+                made.set(full_name(components, name), value)
         for axis in axes:
-            pairs = [(self._full_name(k), v.core() if isinstance(v, Axis) else
-                      _core.values(np.asarray(v, float).tolist())) for k, v in axis]
-            for name, _ in pairs:
-                if name.startswith("shared"):
-                    raise Error(f"'{name.partition('.')[2]}' is shared by all instances and has several values: give "
-                                "one number, or make it a parameter")
-            if len(pairs) == 1:
-                made.axis(*pairs[0])
-            else:
-                made.zip(pairs)
-        self._shared_integers = {name_of(k): int(v) for k, v in constants.items()
-                                 if _time_name(k) is None and name_of(k) in components.names["shared_integer"]}
-        for key, value in constants.items():
+            self._set_axis(made, axis)
+        self._shared_integers = {short_name(name): int(value) for name, value in constants.items()
+                                 if name.startswith("shared_integer.")}
+        for name, value in constants.items():
             if isinstance(value, Random):
-                made.axis(self._full_name(key), value.core())
+                made.axis(name, value.core())
             else:
-                made.set(self._full_name(key), float(value))
+                made.set(name, float(value))
 
     @staticmethod
-    def _defaults(components: Components, constants: Mapping[Any, Any],
-                  varying: Iterable[Component]) -> dict[str, float]:
+    def _set_axis(made: _core.Study, axis: Mapping[str, Any]) -> None:
+        """An axis, with all whose values go along it."""
+        for name, values in axis.items():
+            if len(values) == 0:
+                raise Error(f"'{short_name(name)}' has no values: a study has one instance or more; my.solve takes a "
+                            "sweep of none")
+            if name.partition(".")[0] in shared_kinds:
+                refuse_shared(short_name(name), values)
+        pairs = [(name, values.core() if isinstance(values, Axis) else
+                  _core.values(np.asarray(values, float).tolist())) for name, values in axis.items()]
+        if len(pairs) == 1:
+            made.axis(*pairs[0])
+        else:
+            made.zip(pairs)
+
+    @staticmethod
+    def _defaults(components: Components, constants: Mapping[str, Any], varying: Sequence[str]) -> dict[str, float]:
         """The values of components that are not given, as numbers."""
-        fixed = {components.component(k): v for k, v in constants.items()
-                 if _time_name(k) is None and not isinstance(v, Random)}
-        begin = next((v for k, v in constants.items() if _time_name(k) == "t_begin"), 0.0)
-        unknown = {components.component(k): np.nan for k in varying if _time_name(k) is None}
-        differ = {*unknown, *({"t"} if any(_time_name(k) == "t_begin" for k in varying) else ())}
-        known = components.completed({**fixed, **unknown}, begin)
+        ends = {"t_begin", "t_end"}
+        unknown = {short_name(name): np.nan for name in varying if name not in ends}
+        fixed = {short_name(name): value for name, value in constants.items()
+                 if name not in ends and not isinstance(value, Random)}
+        differ = {*unknown, *({"t"} if "t_begin" in varying else ())}
+        known = components.completed({**fixed, **unknown}, constants.get("t_begin", 0.0))
         found = {n: v for n, v in known.items() if n in components.defaults and n not in components.tables}
         for name in found:
             if name not in fixed and name not in unknown and components.follows(name, differ, fixed):
@@ -254,7 +196,7 @@ class Study:
         only(keep, _keep_choices, "keep=")
         end = keep.get("end", ())
         end = listed(end)
-        names = ["t" if key is time_symbol else self._full_name(key) for key in end]
+        names = ["t" if key is time_symbol else full_name(components, key) for key in end]
         made.keep(names, *(bool(keep.get(choice, choice != "work")) for choice in _keep_choices[1:]))
 
     @property

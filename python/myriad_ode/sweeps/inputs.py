@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import functools
 import os
 from collections.abc import Collection, Iterable
 from typing import TYPE_CHECKING, Any
@@ -28,14 +29,19 @@ class Along:
 
     def __init__(self, sweep: Sweep, name: str) -> None:
         self._sweep, self._name = sweep, name
-        self.values, self.repeat = sweep.along(name)
-        self.dtype = self.values.dtype
+        self.axis, self.given = sweep.coordinates[name]  #: the name of the axis, and the values as they were given
+
+    @functools.cached_property
+    def values_and_repeat(self) -> tuple[Array, int]:
+        """As `Sweep.along`."""
+        return self._sweep.along(self._name)
 
     def __len__(self) -> int:
         return self._sweep.size
 
     def __array__(self, dtype: npt.DTypeLike | None = None, copy: bool | None = None) -> Array:
-        return self._sweep.values(self._name).astype(dtype or self.dtype, copy=False)
+        values = self._sweep.values(self._name)
+        return values.astype(dtype or values.dtype, copy=False)
 
 
 def numbers(value: Any, name: str) -> Any:

@@ -37,20 +37,7 @@ def interpolate(t: Operand, times: npt.ArrayLike, values: npt.ArrayLike, kind: L
     and "hold" one at each end, where adaptive methods reject steps; give maximum_step= where steps might pass over
     details of the data."""
     line = at(users_line())
-    refuse_masked(times, "times of an interpolation")
-    refuse_masked(values, "values of an interpolation")
-    try:
-        times, values = np.asarray(times, float), np.asarray(values, float)
-    except (TypeError, ValueError) as why:
-        raise Error(f"the data of an interpolation are no numbers{line}: {why}") from None
-    if times.ndim != 1 or times.shape != values.shape or times.size < 2:
-        raise Error(f"the interpolation has times of shape {times.shape} and values of shape {values.shape}{line}: "
-                    "give one value for each of two times or more")
-    if not (np.isfinite(times).all() and np.isfinite(values).all()):
-        raise Error(f"the data of an interpolation are not finite{line}: leave such times out")
-    if (np.diff(times) <= 0).any():
-        where = int(np.flatnonzero(np.diff(times) <= 0)[0])
-        raise Error(f"the times of an interpolation do not increase after number {where}{line}: sort them, each once")
+    times, values = _data(times, values, line)
     if kind not in ("linear", "cubic"):
         raise Error(f"kind is {kind!r}{line}: give \"linear\" or \"cubic\"")
     if outside not in _outside:
@@ -87,6 +74,25 @@ def interpolate(t: Operand, times: npt.ArrayLike, values: npt.ArrayLike, kind: L
     for power in range(1, order):
         result = result * offset + make("lookup", (row,), (table, first + power, order, rows))
     return result
+
+
+def _data(times: npt.ArrayLike, values: npt.ArrayLike, line: str) -> tuple[Array, Array]:
+    """Times and values as arrays. Refuses what cannot be interpolated."""
+    refuse_masked(times, "times of an interpolation")
+    refuse_masked(values, "values of an interpolation")
+    try:
+        times, values = np.asarray(times, float), np.asarray(values, float)
+    except (TypeError, ValueError) as why:
+        raise Error(f"the data of an interpolation are no numbers{line}: {why}") from None
+    if times.ndim != 1 or times.shape != values.shape or times.size < 2:
+        raise Error(f"the interpolation has times of shape {times.shape} and values of shape {values.shape}{line}: "
+                    "give one value for each of two times or more")
+    if not (np.isfinite(times).all() and np.isfinite(values).all()):
+        raise Error(f"the data of an interpolation are not finite{line}: leave such times out")
+    if (np.diff(times) <= 0).any():
+        where = int(np.flatnonzero(np.diff(times) <= 0)[0])
+        raise Error(f"the times of an interpolation do not increase after number {where}{line}: sort them, each once")
+    return times, values
 
 
 def _linear(times: Array, values: Array) -> Array:

@@ -154,87 +154,107 @@ def sympy_name(key: Any) -> str:
 
 def from_sympy(value: Any, names: Mapping[str, Any], what: str) -> Any:
     """The expression of a SymPy expression. Its symbols, and functions of time such as x(t), are found by name."""
-    import sympy
+    return _SympyReader(value, names, what).read(value)
 
-    def find(name: str) -> Any:
-        if name not in names:
-            raise Error(f"{what}: '{name}' of `{value}` is unknown: name it in parameters=\"...\" or shared=\"...\"")
-        return names[name]
 
-    same = {"Abs": "abs", "floor": "floor", "Min": "minimum", "Max": "maximum", "ceiling": "ceil", "sqrt": "sqrt",
-            "atan2": "atan2", "cbrt": "cbrt", "ln": "log"}
-    same.update({n: n for n in ("sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log")})
-    relations = {sympy.StrictLessThan: operator.lt, sympy.LessThan: operator.le, sympy.StrictGreaterThan: operator.gt,
-                 sympy.GreaterThan: operator.ge, sympy.Equality: operator.eq, sympy.Unequality: operator.ne}
+_of_sympy = {"Abs": "abs", "floor": "floor", "Min": "minimum", "Max": "maximum", "ceiling": "ceil", "sqrt": "sqrt",
+             "atan2": "atan2", "cbrt": "cbrt", "ln": "log",
+             **{n: n for n in ("sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log")}}
 
-    @functools.cache
-    def convert(e: Any) -> Any:
+
+class _SympyReader:
+    def __init__(self, whole: Any, names: Mapping[str, Any], what: str) -> None:
+        import sympy
+
+        self.sympy, self.whole, self.names, self.what = sympy, whole, names, what
+        self.relations = {
+            sympy.StrictLessThan: operator.lt, sympy.LessThan: operator.le, sympy.StrictGreaterThan: operator.gt,
+            sympy.GreaterThan: operator.ge, sympy.Equality: operator.eq, sympy.Unequality: operator.ne}
+        self.read = functools.cache(self._read)
+
+    def _read(self, e: Any) -> Any:
+        sympy = self.sympy
         if isinstance(e, (sympy.Symbol, sympy.core.function.AppliedUndef)):
-            return find(sympy_name(e))
+            return self._symbol(sympy_name(e))
         if isinstance(e, sympy.Derivative):
-            raise Error(f"{what}: `{e}` is a derivative within an expression: write what it is equal to")
+            raise Error(f"{self.what}: `{e}` is a derivative within an expression: write what it is equal to")
+        if e.is_number or e in (sympy.true, sympy.false):
+            return self._constant(e)
+        for kind, read in ((sympy.Mul, self._product), (sympy.Add, self._sum), (sympy.Pow, self._power),
+                           (sympy.Piecewise, self._pieces), (sympy.Heaviside, self._step)):
+            if isinstance(e, kind):
+                return read(e)
+        if isinstance(e, sympy.Mod):
+            return self.read(e.args[0]) % self.read(e.args[1])
+        if type(e) in self.relations:
+            return self.relations[type(e)](self.read(e.lhs), self.read(e.rhs))
+        if isinstance(e, (sympy.And, sympy.Or)):
+            join = operator.and_ if isinstance(e, sympy.And) else operator.or_
+            return functools.reduce(join, map(self.read, sorted(e.args, key=sympy.default_sort_key)))
+        if isinstance(e, sympy.Not):
+            return ~self.read(e.args[0])
+        name = _of_sympy.get(type(e).__name__)
+        if name is None:
+            raise Error(f"{self.what}: `{e}` has no counterpart in myriad: rewrite it with its functions, as by "
+                        "expression.rewrite(...)")
+        return getattr(ex, name)(*map(self.read, e.args))
+
+    def _symbol(self, name: str) -> Any:
+        if name not in self.names:
+            raise Error(f"{self.what}: '{name}' of `{self.whole}` is unknown: name it in parameters=\"...\" or "
+                        "shared=\"...\"")
+        return self.names[name]
+
+    def _constant(self, e: Any) -> Any:
+        sympy = self.sympy
         if isinstance(e, sympy.Integer):
             return ex.constant(int(e))
         if e in (sympy.true, sympy.false):
             return ex.constant(bool(e))
-        if e.is_number and e.is_real is not False and not e.has(sympy.oo, sympy.nan, sympy.zoo):
+        if e.is_real is not False and not e.has(sympy.oo, sympy.nan, sympy.zoo):
             return ex.constant(float(e))
-        if e.is_number:
-            raise Error(f"{what}: `{e}` is no finite real number")
-        if isinstance(e, sympy.Mul):
-            above, below = [], []
-            for factor in e.as_ordered_factors():
-                if isinstance(factor, sympy.Pow) and factor.exp.is_Rational and factor.exp < 0:
-                    below.append(convert(1 / factor))
-                elif isinstance(factor, sympy.Rational) and not factor.is_Integer and factor.p in (1, -1):
-                    below.append(ex.constant(int(factor.q)))
-                    if factor.p < 0:
-                        above.append(ex.constant(-1))
-                else:
-                    above.append(convert(factor))
-            negative = bool(above) and above[0].op == "constant" and above[0].value == -1
-            above = above[1:] if negative else above
-            product = functools.reduce(operator.mul, above) if above else ex.constant(1)
-            product = -product if negative else product
-            return product / functools.reduce(operator.mul, below) if below else product
-        if isinstance(e, sympy.Add):
-            total = None
-            for term in e.as_ordered_terms():
-                if total is None:
-                    total = convert(term)
-                elif term.could_extract_minus_sign():
-                    total = total - convert(-term)
-                else:
-                    total = total + convert(term)
-            return total
-        if isinstance(e, sympy.Pow):
-            if e.exp == sympy.Rational(1, 2):
-                return ex.sqrt(convert(e.base))
-            return convert(e.base) ** convert(e.exp)
-        if isinstance(e, sympy.Mod):
-            return convert(e.args[0]) % convert(e.args[1])
-        if isinstance(e, sympy.Piecewise):
-            value, condition = e.args[-1]
-            if condition != sympy.true:
-                raise Error(f"{what}: `{e}` has no value where none of its conditions holds: end it with (value, True)")
-            chosen = convert(value)
-            for value, condition in reversed(e.args[:-1]):
-                chosen = ex.where(convert(condition), convert(value), chosen)
-            return chosen
-        if isinstance(e, sympy.Heaviside):
-            x = convert(e.args[0])
-            return ex.where(x > 0, 1.0, ex.where(x < 0, 0.0, convert(e.args[1])))
-        if type(e) in relations:
-            return relations[type(e)](convert(e.lhs), convert(e.rhs))
-        if isinstance(e, (sympy.And, sympy.Or)):
-            join = operator.and_ if isinstance(e, sympy.And) else operator.or_
-            return functools.reduce(join, map(convert, sorted(e.args, key=sympy.default_sort_key)))
-        if isinstance(e, sympy.Not):
-            return ~convert(e.args[0])
-        name = same.get(type(e).__name__)
-        if name is None:
-            raise Error(f"{what}: `{e}` has no counterpart in myriad: rewrite it with its functions, as by "
-                        "expression.rewrite(...)")
-        return getattr(ex, name)(*map(convert, e.args))
+        raise Error(f"{self.what}: `{e}` is no finite real number")
 
-    return convert(value)
+    def _product(self, e: Any) -> Any:
+        above, below = [], []
+        for factor in e.as_ordered_factors():
+            if isinstance(factor, self.sympy.Pow) and factor.exp.is_Rational and factor.exp < 0:
+                below.append(self.read(1 / factor))
+            elif isinstance(factor, self.sympy.Rational) and not factor.is_Integer and factor.p in (1, -1):
+                below.append(ex.constant(int(factor.q)))
+                if factor.p < 0:
+                    above.append(ex.constant(-1))
+            else:
+                above.append(self.read(factor))
+        negative = bool(above) and above[0].op == "constant" and above[0].value == -1
+        above = above[1:] if negative else above
+        product = functools.reduce(operator.mul, above) if above else ex.constant(1)
+        product = -product if negative else product
+        return product / functools.reduce(operator.mul, below) if below else product
+
+    def _sum(self, e: Any) -> Any:
+        first, *terms = e.as_ordered_terms()
+        total = self.read(first)
+        for term in terms:
+            is_negative = term.could_extract_minus_sign()
+            total = total - self.read(-term) if is_negative else total + self.read(term)
+        return total
+
+    def _power(self, e: Any) -> Any:
+        if e.exp == self.sympy.Rational(1, 2):
+            return ex.sqrt(self.read(e.base))
+        return self.read(e.base) ** self.read(e.exp)
+
+    def _pieces(self, e: Any) -> Any:
+        value, condition = e.args[-1]
+        if condition != self.sympy.true:
+            raise Error(f"{self.what}: `{e}` has no value where none of its conditions holds: end it with "
+                        "(value, True)")
+        chosen = self.read(value)
+        for value, condition in reversed(e.args[:-1]):
+            chosen = ex.where(self.read(condition), self.read(value), chosen)
+        return chosen
+
+    def _step(self, e: Any) -> Any:
+        x = self.read(e.args[0])
+        return ex.where(x > 0, 1.0, ex.where(x < 0, 0.0, self.read(e.args[1])))

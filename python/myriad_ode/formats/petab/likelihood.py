@@ -11,11 +11,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...base.errors import Error
+from ...gradients.forward import Forward, refuse_chosen, tolerances
 from ...inference.objective import Free, Objective
 from ...models.components import Components
-from ...solving.core_options import per_state
-from ...solving.options import Options
-from ...solving.solve import solve
 from ...symbolic.derivatives import derivatives
 from ...symbolic.evaluate import evaluate
 from ...symbolic.expression import Node, symbols_of
@@ -116,9 +114,8 @@ class PetabLikelihood(Objective):
 
     def __init__(self, experiment: Experiment, options: Mapping[str, Any]) -> None:
         super().__init__(experiment.free)
-        for name in ("samples", "record", "phases", "sensitivities", "size", "start", "time"):
-            if name in options:
-                raise Error(f"a problem of PEtab chooses {name}= itself: leave it out")
+        refuse_chosen(options, ("samples", "record", "phases", "sensitivities", "size", "start", "time"),
+                      "a problem of PEtab")
         self._experiment, self._model = experiment, experiment.model
         self._components = components = Components(self._model)
         self._own_names = {component: name for name, component in self._model.aliases.items()}
@@ -140,7 +137,8 @@ class PetabLikelihood(Objective):
                                 for c, t in zip(experiment.condition, experiment.time)])
         self._estimated = {o.name: self._noise_varies(o) for o in experiment.observables}
         self.noise_is_estimated = any(varies.any() for varies in self._estimated.values())  #: or depends on the model
-        self._options = {**options, "atol": self._tolerances(options)}
+        self._forward = Forward(self._model, self._varied, {}, {}, {
+            **options, "atol": tolerances(components, options, {n: self._size_of(n) for n in self._varied})})
         #: (observable, condition, time) of each residual; then of the noise that is estimated; then ("prior", name)
         self.labels: list[tuple[Any, ...]] = []
         for o in experiment.observables:
@@ -167,20 +165,10 @@ class PetabLikelihood(Objective):
         given = self._experiment.set_to.get(name)
         return None if given is None else given.at(self._experiment.condition[o.rows])
 
-    def _tolerances(self, options: Mapping[str, Any]) -> dict[str, float]:
-        """Absolute tolerances of states, and of their derivatives by parameters, which are as large as one over these.
-        """
-        states = self._components.states
-        values = per_state(options.get("atol", (options.get("options") or Options()).atol), self._components, "atol",
-                           len(states))
-        of_states = dict(zip(states, values * len(states) if len(values) == 1 else values))
-        found = dict(of_states)
-        for name in self._varied:
-            given = self._experiment.set_to.get(name)
-            free = [self.free[k] for k in set(given.free) if k >= 0] if given is not None else []
-            size = max((max(1.0, abs(f.least), abs(f.most)) for f in free), default=1.0)
-            found |= {f"{c}_by_{name}": tolerance / size for c, tolerance in of_states.items()}
-        return found
+    def _size_of(self, name: str) -> float:
+        """How large a parameter of the model may be."""
+        given = self._experiment.set_to.get(name)
+        return max((self.free[k].size for k in given.free if k >= 0), default=1.0) if given is not None else 1.0
 
     def _differentiated(self) -> AnyModel:
         return self._model
@@ -191,15 +179,11 @@ class PetabLikelihood(Objective):
         return self._solve(np.atleast_2d(self._sets(values)), sensitivities)[0]
 
     def _solve(self, sets: Array, sensitivities: bool) -> tuple[Run, _Instances]:
-        varied = self._varied if sensitivities else []
         instances = _Instances(self._experiment, self._components, sets, self._varied)
-        options = self._options
-        if not varied:
-            options = {**options, "atol": {c: options["atol"][c] for c in self._components.states}}
         samples = {"times": np.tile(self._times, (len(sets), 1)), "states": self._sampled}
-        run = solve(self._model, {n: np.ascontiguousarray(v.ravel()) for n, v in instances.values.items()},
-                    time=(0.0, np.tile(self._ends, len(sets))), size=len(sets) * len(self.conditions),
-                    samples=samples, sensitivities=varied or None, **options)
+        run = self._forward.run({n: np.ascontiguousarray(v.ravel()) for n, v in instances.values.items()},
+                                sensitivities, time=(0.0, np.tile(self._ends, len(sets))),
+                                size=len(sets) * len(self.conditions), samples=samples)
         return run, instances
 
     def evaluate(self, values: Values) -> tuple[Array, Array, Array]:
