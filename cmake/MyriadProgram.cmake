@@ -54,8 +54,8 @@ file(RELATIVE_PATH relative "/prefix/${myriad_data_dir}" "/prefix/${CMAKE_INSTAL
 myriad_write_model_flags("${PROJECT_BINARY_DIR}/installed_model_flags.txt" "${relative}")
 # What draws, of which the Python package has the pictures themselves.
 set(myriad_plot_scripts "${PROJECT_SOURCE_DIR}/src/program/plot.py" "${PROJECT_SOURCE_DIR}/examples/common/figure.py")
-set(myriad_plot_pictures "${PROJECT_SOURCE_DIR}/python/myriad/base/plots.py"
-    "${PROJECT_SOURCE_DIR}/python/myriad/base/errors.py")
+set(myriad_plot_pictures "${PROJECT_SOURCE_DIR}/python/myriad_ode/base/plots.py"
+    "${PROJECT_SOURCE_DIR}/python/myriad_ode/base/errors.py")
 foreach(script IN LISTS myriad_plot_scripts myriad_plot_pictures)
     cmake_path(GET script FILENAME name)
     if(script IN_LIST myriad_plot_pictures)

@@ -68,7 +68,7 @@ test_python() {
         [[ -e $wheel && $(basename "$wheel") != numpy-* ]] && python3 -m zipfile -e "$wheel" "$packages"
     done
     export PYTHONPATH=$packages
-    if [[ ! -e $packages/myriad ]]; then
+    if [[ ! -e $packages/myriad_ode ]]; then
         say "Building the wheel"
         python3 - "$PWD/$deps" >"$output/python_build.log" 2>&1 <<'END' ||
 import os, sys

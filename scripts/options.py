@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """What is written of the table of options, include/myriad/host/options/option_table.hpp:
-python/myriad/solving/options.py, and the table in docs/solving.md.
+python/myriad_ode/solving/options.py, and the table in docs/solving.md.
 
 Usage: PYTHON scripts/options.py (--check | --fix)
 
@@ -18,7 +18,7 @@ import sys
 import textwrap
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-PYTHON = ROOT / "python/myriad/solving/options.py"
+PYTHON = ROOT / "python/myriad_ode/solving/options.py"
 DOCUMENT = ROOT / "docs/solving.md"
 BEGIN, END = "<!-- options: written by scripts/options.py -->\n", "<!-- end of options -->\n"
 
@@ -129,10 +129,10 @@ def main(arguments):
     if arguments not in (["--check"], ["--fix"]):
         print(__doc__.strip())
         return 0 if arguments in (["-h"], ["--help"]) else 2
-    option_names = loaded("option_names", ROOT / "python/myriad/base/option_names.py")
-    package = importlib.util.find_spec("myriad").submodule_search_locations[0]  # which need not be importable
+    option_names = loaded("option_names", ROOT / "python/myriad_ode/base/option_names.py")
+    package = importlib.util.find_spec("myriad_ode").submodule_search_locations[0]  # which need not be importable
     core = next(pathlib.Path(package).glob("_core*.so"))
-    rows = loaded("myriad._core", core).option_rows()
+    rows = loaded("myriad_ode._core", core).option_rows()
     document = DOCUMENT.read_text(encoding="utf-8")
     before, _, rest = document.partition(BEGIN)
     _, end, after = rest.partition(END)

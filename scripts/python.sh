@@ -75,7 +75,7 @@ PATH=$PWD/$environment/bin:$PATH quietly build/python-auditwheel.log \
 "${pip[@]}" install --no-compile --no-deps "$wheels"/*.whl
 say "Built and installed $(basename "$wheels"/*.whl) in $(duration $((SECONDS - started)))"
 "$environment/bin/ruff" check python
-"$environment/bin/mypy" --no-error-summary -p myriad
+"$environment/bin/mypy" --no-error-summary -p myriad_ode
 "$environment/bin/mypy" --no-error-summary python/examples/*.py python/examples/case_studies/*.py
 MYRIAD_TEST_WHEEL=$(realpath "$wheels"/*.whl) \
     "$environment/bin/python" -m pytest -q --numprocesses "$(nproc)" --dist loadfile "$@" python/tests

@@ -17,7 +17,7 @@ import re
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-PACKAGE = "python/myriad"
+PACKAGE = "python/myriad_ode"
 
 # The pages, and the files whose names they have. A public name of another file is an error.
 PAGES = {
@@ -33,7 +33,7 @@ PAGES = {
                     "inference.fitting", "inference.profile", "formats.petab.problem", "inference.designs"]),
     "python_study": ("Python: studies", "Studies, reductions, and results on disk.",
                      ["studies.study", "studies.result", "studies.reduce"]),
-    "python_tools": ("Python: pictures and the cache", "`myriad.plots`, `run.plot`, and `myriad.cache`.",
+    "python_tools": ("Python: pictures and the cache", "`my.plots`, `run.plot`, and `my.cache`.",
                      ["base.plots", "results.run_plots", "kernels.cache"]),
 }
 # Classes that public functions return, whose members users call though they do not make them.
@@ -153,9 +153,9 @@ def read(source):
     for name in names:
         if name in public_modules:
             module = modules[public_modules[name]]
-            found += [(f"myriad.{name}.{n}", module.found[n]) for n in module.public()]
+            found += [(f"my.{name}.{n}", module.found[n]) for n in module.public()]
         elif name in imported and name in modules[imported[name]].found:
-            found.append((f"myriad.{name}", modules[imported[name]].found[name]))
+            found.append((f"my.{name}", modules[imported[name]].found[name]))
         else:
             problems.append(f"{PACKAGE}/__init__.py: {name} is public and defined nowhere")
     for module, classes in RETURNED.items():
@@ -236,14 +236,14 @@ def markdown(text):
 
 def entry(name, entity):
     """The section of one entity."""
-    out = [f"## `{name.removeprefix('myriad.')}`"]
+    out = [f"## `{name.removeprefix('my.')}`"]
     node = entity.node
     if isinstance(node, ast.FunctionDef):
         out.append(f"```python\n{signature(name, node, False)}\n```")
     elif isinstance(node, ast.ClassDef):
         init = next((p for p in node.body if getattr(p, "name", "") == "__init__"), None)
         made = signature(name, init, True).removesuffix(" -> None") if init else name
-        out.append(f"```python\nclass {made if name.startswith('myriad.') else name}\n```")
+        out.append(f"```python\nclass {made if name.startswith('my.') else name}\n```")
     out.append(markdown(entity.text))
     for m in entity.members:
         is_property = any(getattr(d, "id", "") == "property" for d in getattr(m.node, "decorator_list", []))

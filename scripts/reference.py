@@ -614,7 +614,7 @@ def write(entities, folder):
         shown = list(dict.fromkeys(names))
         out.append(f"| [{title}]({page}.md) | {', '.join(shown[:8])}{', ...' if len(shown) > 8 else ''} |")
     out.append("| [CMake](cmake.md) | targets, components, `myriad_add_models`, options |")
-    out.append("\nThe Python package, `myriad`:\n\n| page | what |\n|---|---|")
+    out.append("\nThe Python package, `myriad_ode`:\n\n| page | what |\n|---|---|")
     out.extend(f"| [{title}]({page}.md) | {about} |" for page, (title, about, _) in python_reference.PAGES.items())
     out.append("\nWhat is found by name, and not declared in a header:\n\n| page | what |\n|---|---|")
     out.append("| [Members of a model](../model_members.md) | components, functions, hooks, declarations |")

@@ -26,14 +26,14 @@ from pathlib import Path
 
 import numpy as np
 
-import myriad as my
-from myriad.base import component_kinds as kinds
-from myriad.kernels import nvrtc
-from myriad.base.errors import CannotInterpret
-from myriad.models.any_model import names_of
-from myriad.models.methods import method_type
-from myriad.models.once_per_phase import prepared
-from myriad.formats.sbml.math import Refused
+import myriad_ode as my
+from myriad_ode.base import component_kinds as kinds
+from myriad_ode.kernels import nvrtc
+from myriad_ode.base.errors import CannotInterpret
+from myriad_ode.models.any_model import names_of
+from myriad_ode.models.methods import method_type
+from myriad_ode.models.once_per_phase import prepared
+from myriad_ode.formats.sbml.math import Refused
 
 outcomes = ("right", "refused", "wrong", "failed")
 
@@ -205,7 +205,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0], epilog=__doc__.split("\n\n", 1)[1],
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path, metavar="FOLDER")
-    parser.add_argument("--device", default="cpu:1", help="as of myriad.solve (cpu:1)")
+    parser.add_argument("--device", default="cpu:1", help="as of my.solve (cpu:1)")
     parser.add_argument("--processes", type=int, default=os.cpu_count(), help="that work at the same time")
     parser.add_argument("--compiled", action="store_true", help="compile the models instead of interpreting them")
     parser.add_argument("--method", default="dormand_prince_5", help="of integration (dormand_prince_5)")

@@ -12,7 +12,7 @@ import time
 
 import numpy as np
 
-import myriad as my
+import myriad_ode as my
 
 
 def lotka_volterra(n):

@@ -22,7 +22,7 @@ import numpy as np
 import sympy
 from sympy.codegen.rewriting import create_expand_pow_optimization
 
-import myriad as my
+import myriad_ode as my
 
 folder = pathlib.Path(__file__).parent
 

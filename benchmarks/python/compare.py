@@ -61,7 +61,7 @@ def places(side):
 
 
 def by_myriad(side, **options):
-    import myriad as my
+    import myriad_ode as my
 
     x, v, mu = *my.states("x v"), my.parameter("mu")
     model = my.model({x: v, v: mu * (1 - x * x) * v - x})
@@ -181,9 +181,9 @@ def by_cubie(side):
 
 def gpu():
     """Whether Myriad can use a GPU here."""
-    if importlib.util.find_spec("myriad") is None:
+    if importlib.util.find_spec("myriad_ode") is None:
         return False
-    from myriad import _core
+    from myriad_ode import _core
     return not _core.no_gpu()
 
 

@@ -8,7 +8,7 @@ import argparse
 
 import numpy as np
 
-import myriad as my
+import myriad_ode as my
 
 METHODS = ["cash_karp", "dormand_prince_5", "tsitouras_5", "verner_7", "dormand_prince_8"]
 TOLERANCES = [10.0**-n for n in range(3, 10)]

@@ -11,7 +11,7 @@ import time
 
 import numpy as np
 
-import myriad as my
+import myriad_ode as my
 
 a, b, c = my.states("a b c")
 k1, k2, k3, feed, loss, decay = my.parameters("k1 k2 k3 feed loss decay")

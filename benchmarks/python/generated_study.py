@@ -11,7 +11,7 @@ import resource
 import statistics
 import sys
 
-import myriad as my
+import myriad_ode as my
 
 SECONDS, GIGABYTES = 0.5, 2.0  # limits on an H200, on which the C++ program takes 0.19 s
 

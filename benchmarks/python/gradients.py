@@ -18,7 +18,7 @@ import time
 
 import numpy as np
 
-import myriad as my
+import myriad_ode as my
 
 END, TIMES = 20.0, np.arange(1.0, 21.0)
 START, RATES = (30.0, 4.0), np.array([0.5, 0.025, 0.9, 0.028])

@@ -12,7 +12,7 @@ import time
 
 import numpy as np
 
-import myriad as my
+import myriad_ode as my
 
 SECONDS, LIMIT, LATENCY = 60.0, 1.0, 1.0  # of the whole call; a time limit, and how much later it may take effect
 

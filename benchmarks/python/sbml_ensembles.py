@@ -25,8 +25,8 @@ from pathlib import Path
 
 import numpy as np
 
-import myriad as my
-from myriad.formats.sbml.document import read
+import myriad_ode as my
+from myriad_ode.formats.sbml.document import read
 
 
 def swept(model):
@@ -197,7 +197,7 @@ def main():
     parser.add_argument("--rtol", type=float, default=1e-6)
     parser.add_argument("--atol", type=float, default=1e-6)
     parser.add_argument("--method", default="rodas_5p")
-    parser.add_argument("--device", default="cpu:1", help="as of myriad.solve (cpu:1: one core, as libRoadRunner has)")
+    parser.add_argument("--device", default="cpu:1", help="as of my.solve (cpu:1: one core, as libRoadRunner has)")
     parser.add_argument("--calls", type=int, default=3, help="of which the fastest counts (3)")
     options = parser.parse_args()
     wanted = options.models.split(",") if options.models else None

@@ -11,7 +11,7 @@ import time
 
 import numpy as np
 
-import myriad as my
+import myriad_ode as my
 
 COUNTS = (1, 2, 4, 8)
 

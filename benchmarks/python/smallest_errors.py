@@ -10,7 +10,7 @@ import time
 
 import numpy as np
 
-import myriad as my
+import myriad_ode as my
 
 INSTANCES, CALLS = 8192, 4
 x, y, z = my.states("x y z")

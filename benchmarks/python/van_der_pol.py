@@ -33,7 +33,7 @@ def rows(program, precision, cold, calls):
 
 
 def by_myriad(precision, device, side, calls):
-    import myriad as my
+    import myriad_ode as my
 
     x, v, mu = *my.states("x v"), my.parameter("mu")
     model = my.model({x: v, v: mu * (1 - x * x) * v - x})

@@ -4,7 +4,7 @@ hook, and a grid."""
 
 import numpy as np
 
-import myriad as my
+import myriad_ode as my
 
 # snippet: ball
 x, v = my.states("x v")

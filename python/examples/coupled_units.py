@@ -3,7 +3,7 @@
 
 # snippet: model
 import numpy as np
-import myriad as my
+import myriad_ode as my
 
 n = 40
 ring = my.units(n)

@@ -9,7 +9,7 @@ import numpy as np
 here = pathlib.Path(__file__).parent
 
 # snippet: model
-import myriad as my  # noqa: E402
+import myriad_ode as my  # noqa: E402
 
 model = my.read_sbml(here / "doses.xml")
 one = my.solve(model, {"clearance": [3, 5, 8]}, time=(0, 72), samples=500)

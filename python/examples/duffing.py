@@ -3,7 +3,7 @@
 
 # snippet: duffing
 import numpy as np
-import myriad as my
+import myriad_ode as my
 
 x, v = my.states("x v")
 k, B, t = my.parameter("k"), my.shared("B"), my.time

@@ -4,7 +4,7 @@ sensitivities of an event's time."""
 
 import numpy as np
 
-import myriad as my
+import myriad_ode as my
 
 # snippet: data
 years = np.arange(1900, 1921)

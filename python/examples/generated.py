@@ -2,7 +2,7 @@
 """A study whose instances the model generates where they are integrated, reduced to a histogram there."""
 
 # snippet: generated
-import myriad as my
+import myriad_ode as my
 
 x, y, z = my.states("x y z")
 lorenz = my.model({x: 10 * (y - x), y: x * (28 - z) - y, z: x * y - 8 / 3 * z}, name="lorenz",

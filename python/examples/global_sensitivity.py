@@ -5,7 +5,7 @@ correlations."""
 import matplotlib.pyplot as plt
 import numpy as np
 
-import myriad as my
+import myriad_ode as my
 
 # snippet: model
 susceptible, infected = my.states("susceptible infected")

@@ -7,7 +7,7 @@ import importlib.util
 import numpy as np
 from scipy import optimize
 
-import myriad as my
+import myriad_ode as my
 
 # snippet: function
 prey, predator = my.states("prey predator")

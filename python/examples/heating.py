@@ -4,7 +4,7 @@
 
 import numpy as np
 
-import myriad as my
+import myriad_ode as my
 
 # snippet: triggers
 inside, = my.states("inside")  # temperature in degrees; the time is in hours

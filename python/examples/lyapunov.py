@@ -3,7 +3,7 @@
 
 import numpy as np
 
-import myriad as my
+import myriad_ode as my
 
 # snippet: lyapunov
 x, y, z = my.states("x y z")

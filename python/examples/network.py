@@ -3,7 +3,7 @@
 
 import numpy as np
 
-import myriad as my
+import myriad_ode as my
 
 # snippet: table
 size = 12

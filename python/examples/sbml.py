@@ -9,7 +9,7 @@ import numpy as np
 here = pathlib.Path(__file__).parent
 
 # snippet: sweep
-import myriad as my  # noqa: E402
+import myriad_ode as my  # noqa: E402
 
 switch = my.read_sbml(here / "toggle_switch.xml", parameters="alpha_u alpha_v")
 strengths = np.geomspace(0.5, 50, 120)

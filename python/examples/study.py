@@ -2,7 +2,7 @@
 """A study: random starts along an axis, kept in a folder in which it goes on, and reduced to a mean."""
 
 # snippet: study
-import myriad as my
+import myriad_ode as my
 
 x, v = my.states("x v")
 k, B, t = my.parameter("k"), my.shared("B"), my.time

@@ -4,7 +4,7 @@
 import numpy as np
 import sympy
 
-import myriad as my
+import myriad_ode as my
 
 # snippet: dictionary
 x, v = my.states("x v")

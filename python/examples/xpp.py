@@ -9,7 +9,7 @@ import numpy as np
 here = pathlib.Path(__file__).parent
 
 # snippet: map
-import myriad as my  # noqa: E402
+import myriad_ode as my  # noqa: E402
 
 neuron = my.read_xpp(here / "adaptive_neuron.ode")
 sweep = my.grid(I=np.linspace(0.5, 2, 60), b=np.linspace(0, 0.5, 40))

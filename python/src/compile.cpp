@@ -92,7 +92,7 @@ nb::object call(const nb::callable& function, const std::string& path) {
     try {
         return function(path);
     } catch (nb::python_error& e) {
-        if (!e.matches(nb::module_::import_("myriad.base.errors").attr("Error"))) throw;
+        if (!e.matches(nb::module_::import_("myriad_ode.base.errors").attr("Error"))) throw;
         throw error(nb::cast<std::string>(nb::str(e.value())));
     }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The extension module myriad._core: what the Python side of the package calls. Private; the package checks names and
-// shapes before it calls.
+// The extension module myriad_ode._core: what the Python side of the package calls. Private; the package checks names
+// and shapes before it calls.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -430,7 +430,7 @@ NB_MODULE(_core, m) {
             try {
                 std::rethrow_exception(thrown);
             } catch (const error& e) {
-                const nb::object said = nb::module_::import_("myriad.base.core_words").attr("in_python")(e.said());
+                const nb::object said = nb::module_::import_("myriad_ode.base.core_words").attr("in_python")(e.said());
                 PyErr_SetObject(said.type().ptr(), said.ptr());
             }
         },

@@ -18,8 +18,8 @@ if os.environ.get("MYRIAD_TEST_DEVICE") != "cuda":  # as in the tests of the C++
 # What a shell starts in the background ignores Ctrl-C, and with it Python and the processes that tests start.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
-import myriad as my  # noqa: E402
-from myriad.kernels import compiler  # noqa: E402
+import myriad_ode as my  # noqa: E402
+from myriad_ode.kernels import compiler  # noqa: E402
 
 # Kernels of tests are compiled in about half of the time, with the same results, in the whole session.
 _quick = "-DMYRIAD_OUT_OF_LINE"

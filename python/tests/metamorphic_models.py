@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from math import asin, atan, inf, log, pi, sqrt
 
-import myriad as my
+import myriad_ode as my
 
 
 @dataclass

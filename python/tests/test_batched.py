@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-import myriad as my
+import myriad_ode as my
 
 x, v = my.states("x v")
 k, B = my.parameters("k B")
@@ -41,7 +41,7 @@ def launches(monkeypatch):
         sizes.append(run.size)
         return run
 
-    monkeypatch.setattr("myriad.gradients.batched.solve", counted)
+    monkeypatch.setattr("myriad_ode.gradients.forward.solve", counted)
     return sizes
 
 
@@ -70,7 +70,7 @@ def test_instances_that_failed_are_nan():
 @pytest.mark.parametrize("arguments, message", [
     (dict(by=[k, x], of=x, sweep={B: 0.5, k: 1}), "'k' is in by= and has a value in sweep="),
     (dict(by=[k, k], of=x), "name at least one component each"),
-    (dict(by=["q"], of=x), "'q' is no component that a function can depend on"),
+    (dict(by=["q"], of=x), "'q' is no component that by= can name"),
     (dict(by=[k], of=["q"]), "'q' is no state, accessory or output"),
     (dict(by=[k], of=x, size=3), "chooses size= itself"),
     (dict(by=[k], of=my.time, samples=3), "leave out samples="),
@@ -132,7 +132,7 @@ def test_a_weight_of_zero_counts_nothing_where_a_derivative_does_not_exist(posit
 
 
 def test_jax_lets_a_weight_of_zero_count_nothing(jax):
-    from myriad.gradients.jax_adapter import _product
+    from myriad_ode.gradients.jax_adapter import _product
     jacobian = np.array([[2.0, np.nan], [0.0, 3.0]])
 
     def product(vector):

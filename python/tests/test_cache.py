@@ -12,8 +12,8 @@ import time
 
 import pytest
 
-import myriad as my
-from myriad.kernels import cache, compiled_files, compiler
+import myriad_ode as my
+from myriad_ode.kernels import cache, compiled_files, compiler
 
 from conftest import OSCILLATOR
 
@@ -21,7 +21,7 @@ pytestmark = pytest.mark.as_users_compile
 
 SCRIPT = f"""
 import time
-import myriad as my
+import myriad_ode as my
 imported = time.process_time()
 model = my.CppModel({OSCILLATOR!r}, "oscillator", "x v", "w")
 run = my.solve(model, {{"w": [1.0, 2.0]}}, start={{"x": 1, "v": 0}}, time=(0, 1), rtol=1e-7)
@@ -245,7 +245,7 @@ def test_what_belongs_to_another_user_is_refused(tmp_path, monkeypatch):
 
 def test_a_killed_compilation_leaves_nothing_after_the_next_one(tmp_path, monkeypatch):
     monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path))
-    script = ("import os, signal; from myriad.kernels import compiled_files\n"
+    script = ("import os, signal; from myriad_ode.kernels import compiled_files\n"
               "compiled_files.obtain(b'p', lambda folder: os.kill(os.getpid(), signal.SIGKILL), print)")
     own = file_of("p").removesuffix(".so")
     for key in ("p", "q"):  # the same model, and another one
@@ -337,7 +337,7 @@ def test_compilers_are_told_apart_by_their_files(tmp_path, monkeypatch):
 # Two models, each solved by its kernel, and what happens between them.
 TWO_MODELS = """
 import os, sys
-import myriad as my
+import myriad_ode as my
 x, k = my.state("x"), my.parameter("k")
 
 def grown(sign, name):
@@ -408,7 +408,7 @@ def test_a_program_that_ignores_sigchld_compiles(tmp_path):
 
 def test_a_model_that_does_not_compile_is_refused_where_sigchld_is_ignored(tmp_path):
     script = ("import signal; signal.signal(signal.SIGCHLD, signal.SIG_IGN)\n"
-              "from myriad.kernels import compiler\n"
+              "from myriad_ode.kernels import compiler\n"
               "by = compiler.compiler()\n"
               f"by.compile('int nothing = nobody;', {str(tmp_path)!r})")
     told = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
@@ -440,7 +440,7 @@ def test_a_forked_child_keeps_no_lock(tmp_path, monkeypatch):
 
 def test_a_forked_child_keeps_no_lock_of_a_process_that_was_killed(tmp_path, monkeypatch):
     monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path))
-    script = ("import os, signal, time; from myriad.kernels import compiled_files\n"
+    script = ("import os, signal, time; from myriad_ode.kernels import compiled_files\n"
               "def make(folder):\n"
               "    if os.fork() == 0:\n"
               "        print(os.getpid(), flush=True)\n"
@@ -485,7 +485,7 @@ def test_models_are_compiled_elsewhere_where_the_disk_of_the_cache_is_full(tmp_p
 
 
 def test_without_a_home_and_a_temporary_folder_nothing_is_written_to_the_current_one(tmp_path):
-    script = ("from myriad.kernels import compiled_files; import pathlib\n"
+    script = ("from myriad_ode.kernels import compiled_files; import pathlib\n"
               "make = lambda folder: pathlib.Path(folder, 'model.so').write_text('made')\n"
               "print(compiled_files.obtain(b'w', make, len).unusable)")
     environment = {name: value for name, value in os.environ.items()

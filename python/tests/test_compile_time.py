@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 import example_models
-import myriad as my
-from myriad.kernels import compiler, nvrtc
-from myriad.symbolic.operations import cost
+import myriad_ode as my
+from myriad_ode.kernels import compiler, nvrtc
+from myriad_ode.symbolic.operations import cost
 from test_gpu import network
 
 pytestmark = [pytest.mark.long, pytest.mark.as_users_compile]
@@ -40,7 +40,7 @@ def takes_at_most(most, command, folder, **options):
 
 FIRST = """
 import sys
-import numpy as np, myriad as my
+import numpy as np, myriad_ode as my
 x, v = my.states("x v")
 k, B = my.parameter("k"), my.shared("B")
 duffing = my.model({x: v, v: x - x**3 - k * v + B * my.cos(my.time) + float(sys.argv[1])})
@@ -58,7 +58,7 @@ def test_the_first_result_comes_in_a_second_or_two(tmp_path, monkeypatch, is_pre
     monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path / "cache"))
     if is_prepared:
         my.cache.prepare()
-    unprepared = f"from myriad.kernels import compiler\ncompiler._prepare = lambda by: None\n{FIRST}"
+    unprepared = f"from myriad_ode.kernels import compiler\ncompiler._prepare = lambda by: None\n{FIRST}"
     program = FIRST if is_prepared else unprepared
     assert takes_at_most(most, lambda attempt: [sys.executable, "-c", program, str(attempt)], tmp_path,
                          stdout=subprocess.DEVNULL)
@@ -66,8 +66,8 @@ def test_the_first_result_comes_in_a_second_or_two(tmp_path, monkeypatch, is_pre
 
 NETWORK = """
 import sys
-import myriad as my
-from myriad.kernels import nvrtc
+import myriad_ode as my
+from myriad_ode.kernels import nvrtc
 n = int(sys.argv[1])
 y, mu = my.states([f"y{i}" for i in range(n)]), my.parameter("mu")
 ring = my.model({**{y[i]: y[i + 1] for i in range(0, n, 2)},

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import example_models
-import myriad as my
+import myriad_ode as my
 
 root = pathlib.Path(__file__).resolve().parents[2]
 compiler = shutil.which("g++")

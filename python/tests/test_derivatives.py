@@ -6,11 +6,11 @@ import re
 import numpy as np
 import pytest
 
-import myriad as my
-from myriad.symbolic.derivatives import dependencies, derivatives, directional, transposed
-from myriad.symbolic.evaluate import evaluate
-from myriad.symbolic.expression import constant
-from myriad.symbolic.operations import operations
+import myriad_ode as my
+from myriad_ode.symbolic.derivatives import dependencies, derivatives, directional, transposed
+from myriad_ode.symbolic.evaluate import evaluate
+from myriad_ode.symbolic.expression import constant
+from myriad_ode.symbolic.operations import operations
 
 x, y, z = my.states("x y z")
 k = my.parameter("k")

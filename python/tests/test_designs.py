@@ -5,7 +5,7 @@ and of exponential decay; SALib's analyses give the same."""
 import numpy as np
 import pytest
 
-import myriad as my
+import myriad_ode as my
 
 pytest.importorskip("scipy.stats")
 

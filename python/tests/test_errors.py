@@ -7,9 +7,9 @@ import pickle
 import numpy as np
 import pytest
 
-import myriad as my
-from myriad import _core
-from myriad.base import core_words
+import myriad_ode as my
+from myriad_ode import _core
+from myriad_ode.base import core_words
 
 CALL = dict(sweep={"w": [1.0, 2.0]}, start={"x": 1, "v": 0}, time=(0, 1))
 
@@ -123,7 +123,7 @@ def test_notes_of_studies_name_pythons_options_also_where_an_executor_runs_them(
 
 
 def test_equations_are_no_model():
-    with pytest.raises(my.Error, match=r"the model is a dict: make it by myriad.model\(...\)"):
+    with pytest.raises(my.Error, match=r"the model is a dict: make it by my.model\(...\)"):
         my.solve({"x": "v", "v": "-x"}, start={"x": 1, "v": 0}, time=(0, 1))
 
 

@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 
 import example_models
-import myriad as my
+import myriad_ode as my
 
 root = pathlib.Path(__file__).resolve().parents[2]
 folders = [pathlib.Path(os.environ["MYRIAD_EXAMPLES"]).resolve()] if "MYRIAD_EXAMPLES" in os.environ else [

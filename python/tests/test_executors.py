@@ -15,8 +15,8 @@ import threading
 import numpy as np
 import pytest
 
-import myriad as my
-from myriad.studies import executed_run
+import myriad_ode as my
+from myriad_ode.studies import executed_run
 
 x, v = my.states("x v")
 k = my.parameter("k")

@@ -7,9 +7,9 @@ import signal
 import numpy as np
 import pytest
 
-import myriad as my
-from myriad.inference.least_squares import LeastSquares
-from myriad.inference.student_t import student_quantile
+import myriad_ode as my
+from myriad_ode.inference.least_squares import LeastSquares
+from myriad_ode.inference.student_t import student_quantile
 
 x, w = my.states("x w")
 k, a, B, unused = my.parameters("k a B unused")
@@ -227,8 +227,8 @@ good = {"t": [1, 2, 3], x: [1, 1, 1]}
     (good, {"free": {k: 1}}, "the bounds of 'k' are 1"),
     (good, {"free": {k: (2, 1)}}, "the bounds of 'k' are 2 and 1"),
     (good, {"free": {k: (0, 1, "log")}}, "the lower bound of 'k' is 0, and its logarithm varies"),
-    (good, {"free": {"z": (0, 1)}}, "'z' is no component that a fit can determine"),
-    (good, {"sweep": {k: 1}}, "'k' is free and has a value"),
+    (good, {"free": {"z": (0, 1)}}, "'z' is no component that free= can name"),
+    (good, {"sweep": {k: 1}}, "'k' is in free= and has a value in sweep="),
     (good, {"sweep": {B: [1, 2]}}, "'B' has several values"),
     (good, {"sigma": {w: 1}}, "'w' is no quantity in data"),
     (good, {"sigma": 0}, "sigma of 'x' has values that are not positive"),

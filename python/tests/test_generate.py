@@ -7,7 +7,7 @@ import pickle
 import numpy as np
 import pytest
 
-import myriad as my
+import myriad_ode as my
 
 x, y, z = my.states("x y z")
 rho, beta = my.parameter("rho"), my.shared("beta")
@@ -242,12 +242,12 @@ def test_text_and_sympy_name_the_instance_and_draw():
 
 
 @pytest.mark.parametrize("given, message", [
-    (dict(generate={my.t_end: 1}), "generate assigns t_end.*give myriad.study the time domain"),
+    (dict(generate={my.t_end: 1}), "generate assigns t_end.*give my.study the time domain"),
     (dict(generate={beta: 1}), "generate assigns beta.*what all instances share"),
     (dict(generate={x: my.time}), "generate reads time.*before there is any"),
     (dict(generate={x: 1, y: 2 * x}), "generate reads x.*which it sets itself"),
     (dict(generate={x: 1, "x": 2}), "x is assigned twice in generate"),
-    (dict(generate={x: my.linspace(0, 1, 3)}), "generate sets x to linspace.*write it with myriad.instance"),
+    (dict(generate={x: my.linspace(0, 1, 3)}), "generate sets x to linspace.*write it with my.instance"),
     (dict(generate={n: my.instance / 2}), "generate gives the whole number n the real value `instance / 2`"),
     (dict(generate={"w": 1}), "generate.*'w' is unknown"),
     (dict(generate={my.state("w"): 1}), "the state w.*has no equation"),

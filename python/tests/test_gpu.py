@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 
 import example_models
-import myriad as my
-from myriad import _core
-from myriad.kernels import nvrtc
-from myriad.models.methods import fixed_step, methods
+import myriad_ode as my
+from myriad_ode import _core
+from myriad_ode.kernels import nvrtc
+from myriad_ode.models.methods import fixed_step, methods
 
 pytestmark = pytest.mark.skipif(os.environ.get("MYRIAD_TEST_DEVICE") != "cuda" or bool(_core.no_gpu()),
                                 reason="MYRIAD_TEST_DEVICE is not cuda, or there is no GPU")
@@ -222,7 +222,7 @@ def test_ptx_for_a_gpu_that_nvrtc_does_not_know(monkeypatch, tmp_path):
 
 def test_a_known_model_starts_at_once_in_another_process():
     van_der_pol(1, 0)
-    script = ("import test_gpu; from myriad import _core; _core.wait_for_gpu(0); "
+    script = ("import test_gpu; from myriad_ode import _core; _core.wait_for_gpu(0); "
               "print(test_gpu.van_der_pol(1, 0).report.kernel, test_gpu.van_der_pol(1.5, 0).report.kernel)")
     here = os.path.dirname(__file__)
     told = subprocess.run([sys.executable, "-c", script], cwd=here, capture_output=True, text=True)

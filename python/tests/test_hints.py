@@ -9,12 +9,12 @@ import sys
 
 import pytest
 
-import myriad
-from myriad import _core
-from myriad.models.methods import default
+import myriad_ode as my
+from myriad_ode import _core
+from myriad_ode.models.methods import default
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-FOLDER = pathlib.Path(myriad.__file__).parent
+FOLDER = pathlib.Path(my.__file__).parent
 
 
 def test_the_package_says_that_it_has_types():
@@ -31,7 +31,7 @@ def test_the_stub_of_the_compiled_module_has_all_of_it():
 
 
 def test_methods_are_those_of_the_library():
-    assert list(myriad.methods) == _core.methods
+    assert list(my.methods) == _core.methods
 
 
 def test_one_method_is_the_default_of_python_and_of_study_files_and_pages_name_it():
@@ -49,17 +49,17 @@ def checked(source):
 
 
 @pytest.mark.parametrize("file, before, after, said", [
-    ("solving/solve.py", r'(?s)"""Integrates a model.*?"""', '""""""', "myriad.solve has no description"),
+    ("solving/solve.py", r'(?s)"""Integrates a model.*?"""', '""""""', "my.solve has no description"),
     ("sweeps/sweep.py", "def values\\(self, name: str\\)", "def values(self, name)", "Sweep.values: name has no type"),
     ("results/run.py", r"def size\(self\) -> int", "def size(self)", "Run.size: what it returns has no type"),
-    ("symbolic/symbols.py", r"  #: the time; in an action.*", "", "myriad.time has no description"),
+    ("symbolic/symbols.py", r"  #: the time; in an action.*", "", "my.time has no description"),
     ("symbolic/axes.py", r'__all__ = \["linspace",', '__all__ = ["missing", "linspace",',
      "missing is public and defined"),
 ])
 def test_what_has_no_description_or_type_is_found(tmp_path, file, before, after, said):
     assert checked(ROOT).returncode == 0
-    shutil.copytree(ROOT / "python/myriad", tmp_path / "python/myriad", symlinks=False)
-    changed = tmp_path / "python/myriad" / file
+    shutil.copytree(ROOT / "python/myriad_ode", tmp_path / "python/myriad_ode", symlinks=False)
+    changed = tmp_path / "python/myriad_ode" / file
     text, count = re.subn(before, after, changed.read_text(), count=1)
     assert count == 1
     changed.write_text(text)
@@ -71,7 +71,7 @@ def test_what_has_no_description_or_type_is_found(tmp_path, file, before, after,
 def test_a_type_checker_finds_what_is_wrong_in_a_program(tmp_path):
     mypy = pytest.importorskip("mypy.api")
     program = tmp_path / "program.py"
-    program.write_text('''import myriad as my
+    program.write_text('''import myriad_ode as my
 x, v = my.states("x v")
 k = my.parameter("k")
 oscillator = my.model({x: v, v: -k * x})

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-import myriad as my
+import myriad_ode as my
 
 tight = dict(method="rodas_5p", rtol=1e-8, atol=1e-10)
 

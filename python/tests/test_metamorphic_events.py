@@ -18,7 +18,7 @@ import pytest
 sys.path.insert(0, __file__.rpartition("/")[0])
 import metamorphic_models as models  # noqa: E402
 
-import myriad as my  # noqa: E402
+import myriad_ode as my  # noqa: E402
 
 log_length = 8  # times of each event that are kept: the first ones
 

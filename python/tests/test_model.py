@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 import example_models
-import myriad as my
-from myriad.symbolic.evaluate import evaluate
-from myriad.symbolic.expression import walk
+import myriad_ode as my
+from myriad_ode.symbolic.evaluate import evaluate
+from myriad_ode.symbolic.expression import walk
 
 x, v = my.states("x v")
 k, B = my.parameter("k"), my.shared("B")
@@ -264,18 +264,18 @@ def of_wrong_shape(t, y, A=np.ones((3, 3))):  # noqa: B008, a constant
     (lambda: my.sin(np.ones(3)), r"array of shape \(3,\)"),
     (lambda: my.model("x' = 1 / 0"), "1 is divided by zero"),
     (lambda: x * 10**400, "too large for double precision"),
-    (lambda: math.sin(x), "myriad.sin, not math.sin"),
+    (lambda: math.sin(x), "my.sin, not math.sin"),
     (lambda: float(x), "is not a number yet"),
-    (lambda: bool(x > 0), "use myriad.where"),
-    (lambda: 0 < x < 1, "use myriad.where"),
-    (lambda: x if x > 0 else v, "use myriad.where"),
+    (lambda: bool(x > 0), "use my.where"),
+    (lambda: 0 < x < 1, "use my.where"),
+    (lambda: x if x > 0 else v, "use my.where"),
     (lambda: list(x), "cannot be iterated"),
     (lambda: my.where(x, 1, 2), "is a number and not a condition"),
     (lambda: (x > 0) & 1, "is a number and not a condition"),
     (lambda: my.sin(x > 0), "is a condition and not a number"),
     (lambda: np.spacing(x), "numpy.spacing cannot be applied"),
     # functions
-    (lambda: my.model(branching, states="x v"), "use myriad.where"),
+    (lambda: my.model(branching, states="x v"), "use my.where"),
     (lambda: my.model(of_wrong_shape, states="x v"), r"of_wrong_shape failed .*y has shape \(2,\)"),
     (lambda: my.model(duffing), "states of duffing have no names"),
     (lambda: my.model(duffing, states="x v", parameters="c"), "'c' is no argument of duffing"),
@@ -287,15 +287,15 @@ def of_wrong_shape(t, y, A=np.ones((3, 3))):  # noqa: B008, a constant
     (lambda: my.event(x, direction="up"), "choose \"rising\""),
     (lambda: my.event(x, tolerance=-1), "the tolerance of an event is -1"),
     (lambda: my.event(x, stop_after=-1), "stop_after is -1"),
-    (lambda: my.model({x: 1}, events=[x]), "make it by myriad.event"),
+    (lambda: my.model({x: 1}, events=[x]), "make it by my.event"),
     (lambda: my.model({x: 1}, events=[my.event(x, do={B: 1})]), "assigns B.*which no hook may"),
     (lambda: my.model({x: 1}, events=[my.event(x, do={"x": 0, x: 1})]), "x is assigned twice in event event_1"),
     (lambda: my.model({x: 1}, accessories={a: 0}, initialise={a: 1}), "a is assigned twice in initialise"),
     (lambda: my.model({x: 1}, accessories={x: 0}), "x is no accessory but a state"),
     (lambda: my.model({}), "a model has no equation .*: give a dictionary"),
     (lambda: my.model({x: 1}, accessories={n: 0.5}), "gives the whole number n the real value"),
-    (lambda: my.model({x: 1}, accessories={n: my.integral(x)}), "make it by myriad.accessory"),
-    (lambda: my.model({x: 1}, accessories={a: my.time_of_maximum(x)}), "add one with myriad.phase_maximum"),
+    (lambda: my.model({x: 1}, accessories={n: my.integral(x)}), "make it by my.accessory"),
+    (lambda: my.model({x: 1}, accessories={a: my.time_of_maximum(x)}), "add one with my.phase_maximum"),
     (lambda: my.model({x: 1}, initialise={my.end_phase: True}), "only after_step and events can end a phase"),
     (lambda: my.model({x: 1}, after_step={my.end_phase: 1}), "is a number and not a condition"),
     (lambda: my.model({x: 1}, after_step={a: my.event_count("e")}), "names no event: there are none"),
@@ -367,8 +367,8 @@ def test_names_of_arguments_that_are_all_taken():
 
 
 def test_every_kind_of_component_has_names_in_every_model_and_a_symbol():
-    from myriad.base import component_kinds as kinds
-    from myriad.models import any_model
+    from myriad_ode.base import component_kinds as kinds
+    from myriad_ode.models import any_model
     plurals = [kind.plural for kind in kinds.every.values()]
     assert sorted(plurals) == sorted(any_model.ComponentNames.__annotations__)
     assert set(plurals) <= set(inspect.signature(my.CppModel).parameters)

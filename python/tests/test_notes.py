@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-import myriad as my
+import myriad_ode as my
 
 x, v = my.states("x v")
 k = my.parameter("k")

@@ -12,8 +12,8 @@ import sys
 import numpy as np
 import pytest
 
-import myriad as my
-from myriad.symbolic.expression import vector
+import myriad_ode as my
+from myriad_ode.symbolic.expression import vector
 
 x, v, k = my.state("x"), my.state("v"), my.parameter("k")
 
@@ -95,7 +95,7 @@ def test_a_study_of_no_instance_is_refused_by_name():
 
 def test_an_import_of_all_leaves_pythons_own_names():
     names = {}
-    exec("from myriad import *", names)  # noqa: S102
+    exec("from myriad_ode import *", names)  # noqa: S102
     assert "solve" in names and "sin" in names and not {"abs", "round", "pow", "zip", "np"} & set(names)
     assert set(my.__all__) < set(dir(my)) and "abs" in dir(my) and not [n for n in dir(my) if not hasattr(my, n)]
     assert not {"sys", "expression", "numpy_functions"} & set(dir(my))
@@ -104,11 +104,11 @@ def test_an_import_of_all_leaves_pythons_own_names():
 AGAIN = """
 import importlib, sys, warnings
 warnings.simplefilter("error")
-import myriad as my
+import myriad_ode as my
 my = importlib.reload(my)
-for name in [n for n in sys.modules if n.partition(".")[0] == "myriad"]:
+for name in [n for n in sys.modules if n.partition(".")[0] == "myriad_ode"]:
     del sys.modules[name]
-import myriad as again
+import myriad_ode as again
 assert again is not my
 x = again.state("x")
 print(again.solve(again.model({x: -x}), start={x: 1}, time=(0, 1), interpreted=True, device="cpu")["x"][0])
@@ -183,7 +183,7 @@ def test_polynomials_of_symbols_and_vectors_are_taken():
 
 @pytest.mark.as_users_compile
 def test_a_compiler_may_have_arguments_and_one_that_calls_it(monkeypatch):
-    from myriad.kernels import compiler
+    from myriad_ode.kernels import compiler
 
     real = compiler.known_compiler()
     monkeypatch.delenv("MYRIAD_CXX", raising=False)
@@ -206,7 +206,7 @@ def test_a_compiler_may_have_arguments_and_one_that_calls_it(monkeypatch):
 
 def test_errors_and_expressions_survive_pickling():
     assert pickle.loads(pickle.dumps(x % 0.3 + np.log1p(v))) is (x % 0.3 + np.log1p(v))
-    assert importlib.import_module("myriad") is my
+    assert importlib.import_module("myriad_ode") is my
 
 
 def test_derivatives_keep_the_sign_of_zero_and_compute_small_integers_as_real_numbers():

@@ -13,13 +13,13 @@ import numpy as np
 import pytest
 
 import example_models
-import myriad as my
+import myriad_ode as my
 import test_cpp
-from myriad import _core
-from myriad.kernels import compiled_files, nvrtc
-from myriad.gradients.adjoint import Adjoint
-from myriad.models.methods import method_type, methods
-from myriad.models.sensitivities import with_sensitivities
+from myriad_ode import _core
+from myriad_ode.kernels import compiled_files, nvrtc
+from myriad_ode.gradients.adjoint import Adjoint
+from myriad_ode.models.methods import method_type, methods
+from myriad_ode.models.sensitivities import with_sensitivities
 
 pytestmark = [pytest.mark.long, pytest.mark.skipif(nvrtc.find() is None, reason="there is no NVRTC")]
 # Where there is a driver, NVRTC 13 takes what it compiled before from a cache, and then tells nothing of what it did
@@ -254,7 +254,7 @@ def test_the_first_message_of_nvrtc_is_told():
 def test_without_nvrtc_the_message_says_what_to_install(monkeypatch):
     monkeypatch.setattr(nvrtc, "find", lambda: None)
     monkeypatch.delenv("MYRIAD_NVRTC", raising=False)
-    with pytest.raises(my.Error, match="pip install 'myriad.cuda.'"):
+    with pytest.raises(my.Error, match="pip install nvidia-cuda-nvrtc"):
         nvrtc.library()
     monkeypatch.setenv("MYRIAD_NVRTC", "/nowhere/libnvrtc.so")
     with pytest.raises(my.Error, match="MYRIAD_NVRTC is '/nowhere/libnvrtc.so', and there is no such file"):

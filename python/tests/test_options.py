@@ -10,11 +10,11 @@ import sys
 
 import pytest
 
-import myriad as my
-from myriad import _core
-from myriad.base import option_names
-from myriad.solving import core_options
-from myriad.models.components import Components
+import myriad_ode as my
+from myriad_ode import _core
+from myriad_ode.base import option_names
+from myriad_ode.solving import core_options
+from myriad_ode.models.components import Components
 
 CALL = dict(sweep={"w": [1.0, 2.0]}, start={"x": 1, "v": 0}, time=(0, 1), device="cpu")
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts/options.py"
@@ -83,7 +83,7 @@ def test_options_for_several_calls(oscillator):
 
 
 def test_options_of_the_wrong_kind(oscillator):
-    with pytest.raises(my.Error, match="options is a dict: give myriad.Options"):
+    with pytest.raises(my.Error, match="options is a dict: give my.Options"):
         my.solve(oscillator, **CALL, options={"rtol": 1e-9})
     with pytest.raises(my.Error, match="study has no option 'time_limit'"):
         my.study(oscillator, CALL["sweep"], start=CALL["start"], time=(0, 1), time_limit=3)

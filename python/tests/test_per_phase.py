@@ -6,10 +6,10 @@ import pytest
 
 pytest.importorskip("libsbml")
 
-import myriad as my  # noqa: E402
-from myriad import _core  # noqa: E402
-from myriad.symbolic.operations import cost  # noqa: E402
-from myriad.models.once_per_phase import prepared  # noqa: E402
+import myriad_ode as my  # noqa: E402
+from myriad_ode import _core  # noqa: E402
+from myriad_ode.symbolic.operations import cost  # noqa: E402
+from myriad_ode.models.once_per_phase import prepared  # noqa: E402
 from sbml_models import compartment, document, event, parameter, rate, reaction, species, variable  # noqa: E402
 
 _hill = [compartment("c", 2), species("S", concentration=3), species("P", concentration=0),

@@ -5,7 +5,7 @@ supported is refused with its place in the tables."""
 import numpy as np
 import pytest
 
-import myriad as my
+import myriad_ode as my
 
 v1 = pytest.importorskip("petab.v1")
 import sbml_models as sbml  # noqa: E402, which needs libsbml
@@ -94,7 +94,7 @@ def test_a_problem_is_fitted_to_what_made_its_measurements(tmp_path):
     problem = my.read_petab(write(tmp_path))
     assert problem.free == {"k": (0.01, 10.0, "log"), "scale": (0.1, 20.0)}
     assert problem.nominal == {"k": 0.5, "scale": 1.0}
-    assert repr(problem) == "<myriad.PetabProblem of 19 measurements, to estimate k, scale>"
+    assert repr(problem) == "<myriad_ode.PetabProblem of 19 measurements, to estimate k, scale>"
     fit = problem.fit(starts=8, **tight)
     np.testing.assert_allclose([fit.best["k"], fit.best["scale"]], [K, SCALE], rtol=1e-7)
     assert fit.variance == 1 and fit.notes == []
@@ -159,8 +159,8 @@ def several_conditions(tmp_path):
 
 def test_the_likelihood_of_conditions_overrides_and_estimated_noise_is_petabs(several_conditions):
     problem = my.read_petab(several_conditions)
-    assert repr(problem) == ("<myriad.PetabProblem of 35 measurements at 2 conditions, to estimate k, k_fast, begin, "
-                             "gain, error, share>")
+    assert repr(problem) == ("<myriad_ode.PetabProblem of 35 measurements at 2 conditions, to estimate k, k_fast, "
+                             "begin, gain, error, share>")
     simulated = problem.simulate(**tight)
     t, fast = simulated["time"].to_numpy(float), (simulated["simulationConditionId"] == "fast").to_numpy()
     a = np.where(fast, level(t, 1.5, 0.4, 2.0), level(t, 0.5, 0.2, 3.0))
@@ -290,11 +290,9 @@ def test_initial_values_and_parameters_that_follow_from_what_is_estimated_have_i
 
 
 def test_every_start_and_condition_is_an_instance_of_one_ensemble(several_conditions, monkeypatch):
-    from myriad.formats.petab import likelihood as petab_likelihood
-
     sizes = []
-    solve = petab_likelihood.solve
-    monkeypatch.setattr(petab_likelihood, "solve", lambda *a, **o: sizes.append(o["size"]) or solve(*a, **o))
+    monkeypatch.setattr("myriad_ode.gradients.forward.solve",
+                        lambda *a, **o: sizes.append(o["size"]) or my.solve(*a, **o))
     likelihood = my.read_petab(several_conditions).likelihood()
     likelihood.loss(np.tile([0.9, 0.8, 4.0, 0.7, 0.4, 0.05], (5, 1)))
     assert sizes == [10] and likelihood.conditions == ["slow", "fast"]

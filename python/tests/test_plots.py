@@ -7,9 +7,9 @@ import sys
 import numpy as np
 import pytest
 
-import myriad as my
-from myriad.base import plots
-from myriad.results.run_plots import Plots
+import myriad_ode as my
+from myriad_ode.base import plots
+from myriad_ode.results.run_plots import Plots
 
 matplotlib = pytest.importorskip("matplotlib")
 matplotlib.use("Agg")
@@ -120,7 +120,7 @@ def test_a_map_of_a_run_follows_the_axes_of_its_grid_and_leaves_failures_out():
 
 
 def test_the_functions_for_arrays_are_there_after_import_myriad():
-    script = "import myriad; print(myriad.plots.bifurcation.__name__)"
+    script = "import myriad_ode as my; print(my.plots.bifurcation.__name__)"
     told = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
     assert told.stdout == "bifurcation\n", told.stderr
 

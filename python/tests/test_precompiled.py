@@ -7,14 +7,14 @@ import sys
 
 import pytest
 
-import myriad as my
-from myriad.kernels import cache, compiler
+import myriad_ode as my
+from myriad_ode.kernels import cache, compiler
 
 pytestmark = pytest.mark.long
 
 MODEL = """
 import sys
-import myriad as my
+import myriad_ode as my
 x = my.state("x")
 run = my.solve(my.model({x: -x * float(sys.argv[1])}), start={x: 1}, time=(0, 1), device="cpu")
 print(run.report.kernel, run["x"][0].hex(), round(run.report.compile_seconds, 3))

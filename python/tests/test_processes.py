@@ -11,7 +11,7 @@ import time
 import numpy as np
 import pytest
 
-import myriad as my
+import myriad_ode as my
 
 w = np.linspace(1, 2, 200)
 

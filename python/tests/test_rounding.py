@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-import myriad as my
+import myriad_ode as my
 
 x, a, b = my.state("x"), my.parameter("a"), my.parameter("b")
 r = my.accessory("r")

@@ -9,7 +9,7 @@ import sys
 import numpy as np
 import pytest
 
-import myriad as my
+import myriad_ode as my
 
 pytest.importorskip("libsbml", reason="models of SBML are read by the package python-libsbml")
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from conftest import OSCILLATOR
 
-import myriad as my
+import myriad_ode as my
 
 x, v = my.states("x v")
 k = my.parameter("k")

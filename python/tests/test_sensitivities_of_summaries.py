@@ -5,7 +5,7 @@ closed forms."""
 import numpy as np
 import pytest
 
-import myriad as my
+import myriad_ode as my
 
 x, v = my.states("x v")
 k, r, g = my.parameters("k r g")

@@ -12,8 +12,8 @@ pytestmark = [pytest.mark.long, pytest.mark.skipif(shutil.which("g++") is None, 
 
 MODEL = """
 import concurrent.futures, ctypes, os, pathlib
-import numpy as np, myriad as my
-from myriad import _core
+import numpy as np, myriad_ode as my
+from myriad_ode import _core
 x, v, k, B, t = *my.states("x v"), my.parameter("k"), my.shared("B"), my.time
 peak, n = my.accessory("peak"), my.integer_accessory("n")
 model = my.model({x: v, v: x - x**3 - k * v + B * my.cos(t)}, accessories={peak: x, n: 0},
@@ -69,10 +69,10 @@ def run(tmp_path_factory):
 def test_a_kernel_that_is_prepared_is_not_compiled_again(run, tmp_path):
     """As another process does for one that uses the GPU, and only loads."""
     run("""
-from myriad.base import component_kinds as kinds
-from myriad.kernels import nvrtc
-from myriad.models.any_model import names_of
-from myriad.models.methods import default, method_type
+from myriad_ode.base import component_kinds as kinds
+from myriad_ode.kernels import nvrtc
+from myriad_ode.models.any_model import names_of
+from myriad_ode.models.methods import default, method_type
 names = names_of(model)
 nvrtc.prepare(*model.source(), method_type(default), "double", tuple(len(names[kind]) for kind in kinds.shared), 0)
 assert solve("cuda", 3).report.kernel == "cache", solve("cuda", 3).report.kernel
@@ -211,7 +211,7 @@ with concurrent.futures.ThreadPoolExecutor(4) as pool:
 assert [r.report.device for r in several] == ["cuda:0", "cuda:1"] * 4
 assert all(np.array_equal(r["x"], solve("cuda", 100 + i)["x"]) for i, r in enumerate(several))
 assert solve("auto", 5, interpreted=True).report.device == "cpu"
-from myriad.kernels import nvrtc
+from myriad_ode.kernels import nvrtc
 nvrtc.find = lambda: pathlib.Path("libnvrtc.so.14")
 assert "NVRTC of CUDA 14 compiles for newer drivers than this one, of CUDA 13" in message(
     lambda: solve("cuda", 5, precision="float"))
@@ -254,7 +254,7 @@ assert "names no device" in message(lambda: study(5).run(device=[]))
 
 def test_a_study_on_an_interpreter_and_a_gpu(run):
     run("""
-from myriad.kernels import compiler
+from myriad_ode.kernels import compiler
 compiler.find_compiler = lambda: None
 linear = my.model({x: v, v: -k * x}, events=[my.event(v, direction="falling", do={n: n + 1})],
                   accessories={n: 0})
@@ -579,7 +579,7 @@ assert solve({device}, 50).report.by_status == {{"success": 50}}
 
 JAX = """
 import jax
-from myriad.gradients.jax_adapter import jax_function
+from myriad_ode.gradients.jax_adapter import jax_function
 jax.config.update("jax_enable_x64", True)
 
 damping = my.parameter("damping")
@@ -610,7 +610,7 @@ def run_jax(run):
 @pytest.mark.thorough
 def test_jax_programs_on_a_gpu_have_the_results_and_derivatives_of_the_host_in_one_call(run_jax):
     run_jax("""
-from myriad.gradients import batched
+from myriad_ode.gradients import batched
 there, here = on_gpu(), function("cpu").to_jax()
 for theta in sets, sets[0], np.stack([sets, sets]):
     found = there(theta)
@@ -661,7 +661,7 @@ wrong[3, 1] = np.nan
 for f in on_gpu(), jax.jit(jax.vmap(jax.grad(loss(on_gpu())))):
     assert "parameter 1 (damping) is nan in instance 3" in message(lambda: jax.block_until_ready(f(wrong)), Exception)
 there = jax_function(function("cuda:1"), platform="cpu")
-assert 'give device="cuda:0" to myriad.batched' in message(lambda: jax.block_until_ready(there(sets)), Exception)
+assert 'give device="cuda:0" to my.batched' in message(lambda: jax.block_until_ready(there(sets)), Exception)
 assert close(on_gpu()(sets), function("cpu")(sets))  # and goes on
 """, MYRIAD_SIMULATED_GPUS=2)
 
@@ -698,7 +698,7 @@ assert np.isfinite(all["x"]).all() and np.array_equal(all["x"], on_host(all.devi
 
 
 ADJOINT = """
-from myriad.gradients import adjoint
+from myriad_ode.gradients import adjoint
 x, y = my.states("x y")
 a, b, c = my.parameters("a b c")
 model = my.model({x: a * x - b * x * y, y: b * x * y - y + c * my.exp(-x * x)},

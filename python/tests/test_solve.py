@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-import myriad as my
+import myriad_ode as my
 
 w = np.linspace(1, 2, 37)
 start = {"x": 1, "v": 0}

@@ -4,8 +4,8 @@
 import numpy as np
 import pytest
 
-import myriad as my
-from myriad.models import state_jumps
+import myriad_ode as my
+from myriad_ode.models import state_jumps
 
 x, y, clock = my.states("x y clock")
 c, K = my.parameters("c K")

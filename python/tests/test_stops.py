@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-import myriad as my
+import myriad_ode as my
 
 gut, blood = my.states("gut blood")
 ka, ke, dose, interval, doses = my.parameters("ka ke dose interval doses")
@@ -209,7 +209,7 @@ def test_stops_are_written_as_cpp():
     (lambda: my.stop([]), "give one time or a list of times"),
     (lambda: treatment(my.stop(gut)), "gut stands in the time of stop stop_1.*make an event where a state decides"),
     (lambda: treatment(my.stop(my.time + 1)), "time stands in the time of stop stop_1"),
-    (lambda: treatment(1.5), r"stops\[0\] is float.*make it by myriad.stop"),
+    (lambda: treatment(1.5), r"stops\[0\] is float.*make it by my.stop"),
     (lambda: treatment(my.stop(1, name="int")), "keyword of C"),
     (lambda: treatment(my.stop(my.parameter("stop_time"))), "'stop_time' names a parameter"),
 ])

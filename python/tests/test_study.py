@@ -14,8 +14,8 @@ import time
 import numpy as np
 import pytest
 
-import myriad as my
-from myriad.studies import store_slices
+import myriad_ode as my
+from myriad_ode.studies import store_slices
 
 x, v = my.states("x v")
 k, B = my.parameter("k"), my.shared("B")
@@ -83,8 +83,8 @@ def test_netcdf_is_written_part_by_part(tmp_path, package, monkeypatch):
     module = pytest.importorskip(package)
     if package != "netCDF4":
         pytest.importorskip("h5py")
-    monkeypatch.setattr("myriad.studies.result._netcdf_package", lambda: module.Dataset)
-    monkeypatch.setattr("myriad.studies.result.blocks", lambda lengths, most: store_slices.blocks(lengths, 8))
+    monkeypatch.setattr("myriad_ode.studies.result._netcdf_package", lambda: module.Dataset)
+    monkeypatch.setattr("myriad_ode.studies.result.blocks", lambda lengths, most: store_slices.blocks(lengths, 8))
     result = my.study(duffing(), grid(), keep=[x], reduce=my.reduce.minimum("x"), **call).run(tmp_path / "store")
     result.to_netcdf(tmp_path / "study.nc")
     assert sorted(os.listdir(tmp_path)) == ["store", "study.nc"]
@@ -208,7 +208,7 @@ def test_tables_samples_and_events_of_models():
 
 SLOW = """
 import sys, threading
-import numpy as np, myriad as my
+import numpy as np, myriad_ode as my
 x, v = my.states("x v")
 k = my.parameter("k")
 study = my.study(my.model({x: v, v: -k * x}), my.grid({k: my.linspace(1, 2, 4000)}), start={x: 1, v: 0},
@@ -363,7 +363,7 @@ def test_a_study_too_large_for_any_disk_is_refused_at_once(tmp_path):
 
 
 def test_results_that_live_until_the_end_are_no_page_of_warnings():
-    script = ("import ctypes, myriad as my; x = my.state('x')\n"
+    script = ("import ctypes, myriad_ode as my; x = my.state('x')\n"
               "run = my.solve(my.model({x: -x}), start={x: [1.0]}, time=(0, 1), interpreted=True)\n"
               "ctypes.pythonapi.Py_IncRef(ctypes.py_object(run))  # as by another library that has an array")
     told = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
@@ -397,9 +397,9 @@ def test_messages_of_axes():
         my.linspace("a", 1, 2)
     with pytest.raises(my.Error):
         my.linspace(0, 1, 0)
-    with pytest.raises(my.Error, match="shared by all instances and has several values"):
+    with pytest.raises(my.Error, match="shared by all instances and has 2 values"):
         my.study(duffing(), my.grid({k: 1, B: [1, 2]}), start={x: 1, v: 0}, time=(0, 1))
-    with pytest.raises(my.Error, match="has 3 values and 'state.x' has 2"):
+    with pytest.raises(my.Error, match="'k' has 3 values and 'x' has 2"):
         my.study(duffing(), {k: [1, 2, 3], B: 1}, start={x: [1, 2], v: 0}, time=(0, 1))
 
 

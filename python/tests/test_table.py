@@ -8,7 +8,7 @@ import sys
 import numpy as np
 import pytest
 
-import myriad as my
+import myriad_ode as my
 
 matrix = np.random.default_rng(1).normal(size=(12, 12)) - 4 * np.eye(12)
 states = my.states([f"y{i}" for i in range(12)])
@@ -56,7 +56,7 @@ def test_integrated_with_a_table_linear_equations_have_their_closed_form():
 
 
 INTERPRETED = """
-import numpy as np, myriad as my
+import numpy as np, myriad_ode as my
 x, y = my.states("x y")
 W = my.table("W", np.linspace(-1, 1, 18).reshape(2, 9))
 slopes = W @ [x, y, x * y, x - y, 1, x, y, x + y, 2] - W[0, 1] * np.array([x, y])

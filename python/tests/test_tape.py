@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import example_models
-import myriad as my
-from myriad.base.errors import CannotInterpret
+import myriad_ode as my
+from myriad_ode.base.errors import CannotInterpret
 
 
 def oscillator():
@@ -69,7 +69,7 @@ def test_every_function_has_the_value_of_numpy():
 
 
 SCRIPT = """
-import myriad as my
+import myriad_ode as my
 x, v = my.states("x v")
 run = my.solve(my.model({x: v, v: -x}), start={x: 1, v: 0}, time=(0, 1))
 print(run.report.kernel, float(run["x"][0]))

@@ -5,7 +5,7 @@ import time
 
 import pytest
 
-import myriad as my
+import myriad_ode as my
 
 
 @pytest.mark.parametrize("equation, message", [

@@ -5,9 +5,9 @@ from files."""
 import numpy as np
 import pytest
 
-import myriad as my
-from myriad import where
-from myriad.codegen.unit_writer import unit_form
+import myriad_ode as my
+from myriad_ode import where
+from myriad_ode.codegen.unit_writer import unit_form
 
 x, clock = my.states("x clock")
 k, T = my.parameters("k T")

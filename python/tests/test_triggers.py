@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-import myriad as my
+import myriad_ode as my
 
 x, y = my.states("x y")
 lag = my.parameter("lag")
@@ -189,7 +189,7 @@ def test_a_study_has_triggers(tmp_path):
      "the triggers have room for 1200 actions.*at most 1000 in a model.*smaller room="),
     (lambda: my.trigger(x > 1, persistent="no"), "persistent of a trigger is 'no'"),
     (lambda: my.trigger(x > 1, name="int"), "keyword of C"),
-    (lambda: ramp(my.event(x)), r"triggers\[0\] is Event.*make it by myriad.trigger"),
+    (lambda: ramp(my.event(x)), r"triggers\[0\] is Event.*make it by my.trigger"),
     (lambda: ramp(my.trigger(my.event_count("e") > 1)), "e stands in an equation, event or summary"),
     (lambda: my.model({x: 1, "condition": 0}, triggers=my.trigger(x > 1)), "'condition' names a state"),
     (lambda: my.model({x: 1, "due_time_1": 0}, triggers=my.trigger(x > 1, delay=1)), "'due_time_1' names both"),

@@ -4,8 +4,8 @@
 import numpy as np
 import pytest
 
-import myriad as my
-from myriad.codegen.unit_writer import unit_form
+import myriad_ode as my
+from myriad_ode.codegen.unit_writer import unit_form
 
 n = 12
 rng = np.random.default_rng(3)
@@ -105,7 +105,7 @@ def test_values_of_a_run_are_given_for_all_units():
 
 
 def test_a_full_coupling_of_many_units_is_written_without_making_all_derivatives(monkeypatch):
-    from myriad.codegen import cpp_writer as cpp
+    from myriad_ode.codegen import cpp_writer as cpp
 
     def refuse(*_):
         raise AssertionError("16384 derivatives are made, and left out")

@@ -14,9 +14,9 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
-import myriad as my
-from myriad import _core
-from myriad.codegen import tape_writer
+import myriad_ode as my
+from myriad_ode import _core
+from myriad_ode.codegen import tape_writer
 from validation_problems import heat, problems
 
 device = os.environ.get("MYRIAD_TEST_DEVICE", "cpu")

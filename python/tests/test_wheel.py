@@ -36,11 +36,12 @@ def test_it_holds_what_models_are_compiled_with_and_nothing_else(files):
                             ("backends/cuda", (".hpp", ".cuh")), ("python/native", (".hpp", ".cuh"))):
         wanted |= {str(file.relative_to(root / folder)) for file in (root / folder).rglob("*")
                    if file.suffix in endings}
-    assert len(wanted) > 100 and wanted <= {name.removeprefix("myriad/include/") for name in files}
-    others = [name for name in files if not name.startswith("myriad/include/")]
-    modules = {str(file.relative_to(root / "python")) for file in (root / "python" / "myriad").rglob("*.py")}
-    modules |= {"myriad/py.typed", "myriad/_core.pyi"}  # for type checkers
-    assert all(name in modules or re.match(r"myriad/_core\.[^/]*so$|myriad-[^/]*\.dist-info/", name) for name in others)
+    assert len(wanted) > 100 and wanted <= {name.removeprefix("myriad_ode/include/") for name in files}
+    others = [name for name in files if not name.startswith("myriad_ode/include/")]
+    modules = {str(file.relative_to(root / "python")) for file in (root / "python" / "myriad_ode").rglob("*.py")}
+    modules |= {"myriad_ode/py.typed", "myriad_ode/_core.pyi"}  # for type checkers
+    made = re.compile(r"myriad_ode/_core\.[^/]*so$|myriad_ode-[^/]*\.dist-info/")
+    assert all(name in modules or made.match(name) for name in others)
     assert modules <= set(others) and any("_core." in name for name in others)
 
 

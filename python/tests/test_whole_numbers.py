@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-import myriad as my
+import myriad_ode as my
 
 LARGEST, LEAST = 2**31 - 1, -2**31
 x, k = my.state("x"), my.parameter("k")

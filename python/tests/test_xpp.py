@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-import myriad as my
+import myriad_ode as my
 
 
 def solved(text, *arguments, time=(0, 2), samples=21, **options):

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 import example_models
-import myriad as my
+import myriad_ode as my
 
 tau = 2 * np.pi
 

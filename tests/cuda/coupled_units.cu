@@ -33,7 +33,9 @@ static_assert(myriad::detail::shared_step_bytes<myriad::dormand_prince_8, part_o
 INSTANTIATE(small, cash_karp, constant_bank)
 INSTANTIATE(small_as_a_whole, cash_karp, constant_bank)
 INSTANTIATE(part_of_30, tsitouras_5, constant_bank)
-INSTANTIATE(part_with_hooks, cash_karp, constant_bank)
 INSTANTIATE(part_that_observes, cash_karp, constant_bank)
+#if defined(MYRIAD_THOROUGH)
+INSTANTIATE(part_with_hooks, cash_karp, constant_bank)
 INSTANTIATE(part_that_adapts, cash_karp, constant_bank)
+#endif
 INSTANTIATE(part_of_256, cash_karp, cache)

@@ -3,7 +3,7 @@
 """Checks that imports of the Python package only point down: a package imports those before it in LAYERS alone, and no
 files import each other in a circle. Imports for type checkers and within functions count.
 
-Usage: check_import_graph.py [FOLDER], by default the package in python/myriad."""
+Usage: check_import_graph.py [FOLDER], by default the package in python/myriad_ode."""
 
 import ast
 import pathlib
@@ -81,4 +81,4 @@ def main(root):
 
 if __name__ == "__main__":
     sys.exit(main(pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else
-                  pathlib.Path(__file__).resolve().parents[2] / "python/myriad"))
+                  pathlib.Path(__file__).resolve().parents[2] / "python/myriad_ode"))

@@ -13,7 +13,7 @@ SOUND = {
     "base/errors.py": "import os\nfrom math import pi\n",
     "base/kinds.py": "from .. import _core\nfrom .._core import kinds\n",
     "models/event.py": "from ..base import errors as why, kinds\n",
-    "models/model.py": "from typing import TYPE_CHECKING\nimport myriad._core\nfrom ..base.errors import Error\n"
+    "models/model.py": "from typing import TYPE_CHECKING\nimport myriad_ode._core\nfrom ..base.errors import Error\n"
                        "if TYPE_CHECKING:\n    from .event import Event\n",
     "formats/sbml/math.py": "from ...base import errors\n",
     "formats/sbml/model.py": "def read():\n    from ...models.model import Model\n    from . import math\n",
@@ -24,7 +24,7 @@ class CheckImportGraph(unittest.TestCase):
     def complaints_of(self, changed):
         """The complaints about SOUND with other texts of some files."""
         with tempfile.TemporaryDirectory() as folder:
-            root = pathlib.Path(folder, "myriad")
+            root = pathlib.Path(folder, "myriad_ode")
             for name, text in {**SOUND, **changed}.items():
                 (root / name).parent.mkdir(parents=True, exist_ok=True)
                 (root / name).write_text(text, encoding="utf-8")
@@ -48,13 +48,13 @@ class CheckImportGraph(unittest.TestCase):
 
     def test_one_for_type_checkers_and_one_within_a_function(self):
         for text in ("if TYPE_CHECKING:\n    from ..formats.sbml.model import read\n",
-                     "def f():\n    from ..formats.sbml import model\n", "import myriad.formats.sbml.model\n",
-                     "from myriad.formats.sbml import model\n"):
+                     "def f():\n    from ..formats.sbml import model\n", "import myriad_ode.formats.sbml.model\n",
+                     "from myriad_ode.formats.sbml import model\n"):
             self.assert_found({"models/event.py": text}, "models/event.py", "formats.sbml.model")
 
     def test_what_the_package_brings_together(self):
         self.assert_found({"models/event.py": "from .. import model\n"}, "models/event.py:1 imports the package itself")
-        self.assert_found({"models/event.py": "import myriad\n"}, "models/event.py:1 imports the package itself")
+        self.assert_found({"models/event.py": "import myriad_ode\n"}, "models/event.py:1 imports the package itself")
 
     def test_a_circle_of_files_of_a_package(self):
         self.assert_found({"models/event.py": "def f():\n    from . import model\n"}, "in a circle",

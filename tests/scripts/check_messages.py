@@ -10,7 +10,7 @@ import pathlib
 import re
 import sys
 
-PYTHON = ("python/myriad/**/*.py", "scripts/*.py")
+PYTHON = ("python/myriad_ode/**/*.py", "scripts/*.py")
 CPP = ("src/*/*.cpp", "src/*/*/*.cpp", "src/*/*.hpp", "include/myriad/host/*/*.hpp", "include/myriad/study/*.hpp",
        "python/src/*.cpp", "python/src/*.hpp", "backends/cuda/myriad/cuda/*.cuh")
 SEARCHES = {"count", "endswith", "find", "index", "partition", "removeprefix", "removesuffix", "replace", "rfind",

@@ -10,7 +10,7 @@
 import numpy as np
 from matplotlib import pyplot as plt
 
-import myriad as my
+import myriad_ode as my
 
 y, v = my.states("y v")
 f, pressure = my.parameters("f pressure")  # of the sound, in Hz and Pa

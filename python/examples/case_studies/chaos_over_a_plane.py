@@ -12,7 +12,7 @@
 import numpy as np
 from matplotlib import pyplot as plt
 
-import myriad as my
+import myriad_ode as my
 
 x, v = my.states("x v")
 k, B = my.parameters("k B")

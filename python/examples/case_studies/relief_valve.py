@@ -10,7 +10,7 @@
 import numpy as np
 from matplotlib import pyplot as plt
 
-import myriad as my
+import myriad_ode as my
 
 y, v, u = my.states("y v u")
 q = my.parameter("q")

@@ -27,13 +27,13 @@ _kernels = {
 
 
 class Compiler:
-    """In the place of `myriad.nvrtc.library()`."""
+    """In the place of `myriad_ode.kernels.nvrtc.library()`."""
 
     version = "simulated"
 
     def compile(self, source, capability, options=()):
         """A program of the simulated driver, and what the compiler says."""
-        from myriad.kernels import cache, nvrtc
+        from myriad_ode.kernels import cache, nvrtc
         kernels = [name for header, names in _kernels.items() if header in source for name in names]
         source = "\n".join([f'#include "{_here}/device.hpp"', source, "SIMULATED_PROGRAM",
                             *(f"SIMULATED_KERNEL({name})" for name in kernels), ""])
@@ -58,7 +58,7 @@ def run(folder, script, **variables):
 
 def install():
     """Has the package take the simulated compiler."""
-    from myriad.kernels import nvrtc
+    from myriad_ode.kernels import nvrtc
     nvrtc.library = Compiler
     nvrtc.find = lambda: pathlib.Path(__file__)
 

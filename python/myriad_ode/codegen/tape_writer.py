@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: MIT
+"""Interpreted models: the operations of a traced model as a tape, which the core runs where there is no compiler."""
+
+from __future__ import annotations
+
+import collections
+from collections.abc import Callable, Iterable, Sequence
+from typing import TYPE_CHECKING
+
+from .. import _core
+from ..base import component_kinds as kinds
+from ..base.errors import CannotInterpret, Error
+from ..models.recorded import RecordedModel
+from ..symbolic import symbols as sym
+from ..symbolic.expression import constant, integer, is_long, walk
+
+if TYPE_CHECKING:
+    from ..models.components import Components
+    from ..models.trigger import Edge
+    from ..symbolic.expression import Node
+    from ..symbolic.types import Assignments
+
+methods = tuple(_core.interpreted_methods())
+_codes = {name: number for number, name in enumerate(_core.tape_operations())}
+_sizes = _core.tape_sizes  # of the interpreters, from the smallest: the most components of each kind
+
+
+def _refuse(why: str) -> Error:
+    return CannotInterpret(f"the model cannot be interpreted, as {why}: install a C++ compiler (g++ 12 or clang++ 14 "
+                           "or newer), or `pip install ziglang`")
+
+
+_of_whole_numbers = {"add": "wrapping_add", "subtract": "wrapping_subtract", "multiply": "wrapping_multiply",
+                     "quotient": "quotient", "remainder": "remainder"}
+
+
+def _plural(kind: str) -> str:
+    return kinds.every[kind].plural.replace("_", " ") if kind in kinds.every else f"{kind}s"
+
+
+def _size_for(components: Components) -> str:
+    """The smallest interpreter that has all components of a model."""
+    for size, limits in _sizes.items():
+        if all(components.counts[kind] <= most for kind, most in limits.items()):
+            return size
+    kind, most = next((k, m) for k, m in limits.items() if components.counts[k] > m)
+    raise _refuse(f"it has {components.counts[kind]} {_plural(kind)}, and the interpreter {most} at the most")
+
+
+class Writer:
+    """Writes the functions of one model, one after the other."""
+
+    def __init__(self, components: Components) -> None:
+        self.place = components.place
+        self.events = components.event_names
+        self.codes: list[int] = []
+        self.values: list[float] = []
+        self.registers: list[tuple[int, int, int, int]] = []
+        self.functions: list[list[tuple[int, int]]] = [[]]
+
+    def _emit(self, code: str, to: int = 0, a: int = 0, b: int = 0, c: int = 0, value: float = 0.0) -> None:
+        if code not in _codes:
+            raise _refuse(f"it uses {code}")
+        self.codes.append(_codes[code])
+        self.values.append(value)
+        self.registers.append((to, a, b, c))
+
+    def _symbol(self, node: Node, to: int) -> None:
+        kind, name = node.value
+        if kind == "built-in":
+            self._emit(f"load_{name}", to)
+        elif kind == "event_count":
+            self._emit("load_event_count", to, self.events.index(name))
+        elif kind == "side":
+            self._emit("load_state", to, self.events.index(name))
+        elif kind == "waiting":
+            self._emit("load_waiting", to, int(name))
+        else:
+            self._emit(f"load_{kind}", to, self.place[name][1])
+
+    def _operation(self, node: Node, arguments: Sequence[int], to: int, term: int) -> None:
+        """One operation, from the registers of its arguments; a sum of products has one more for a term."""
+        if node.op == "symbol":
+            self._symbol(node, to)
+        elif node.op == "element":
+            table, number = node.value
+            self._emit("load_shared", to, self.place[table.element_name(number)][1])
+        elif node.op == "dot":
+            table, row = node.value
+            for j, (place, argument) in enumerate(zip(table.places(row), arguments)):
+                product = term if j else to
+                self._emit("load_shared", product, self.place[table.element_name(place)][1])
+                self._emit("multiply", product, product, argument)
+                if j:
+                    self._emit("add", to, to, product)
+        elif node.op in ("lookup", "find_interval"):
+            table, first, *numbers = node.value
+            stride, rows = numbers if len(numbers) == 2 else (1, *numbers)
+            place = self.place[table.element_name(first)][1]
+            self._emit(node.op, to, rows, arguments[0], stride, float(place))
+        elif node.type == integer and node.op in _of_whole_numbers:
+            first, second = arguments
+            self._emit(_of_whole_numbers[node.op], to, first, second, int(is_long(node)))
+        elif node.op in ("constant", "truth"):
+            self._emit("constant", to, value=float(node.value))
+        else:
+            name = {"sincos.sine": "sin", "sincos.cosine": "cos", "sincospi.sine": "sinpi",
+                    "sincospi.cosine": "cospi"}.get(node.op, node.op)
+            self._emit(name, to, *arguments)
+
+    def function(self, roots: Sequence[Node], stores: Sequence[tuple[str, int]]) -> None:
+        """One function: the values of `roots`, each stored by (code, number) in `stores`. Everything is computed before
+        anything is stored."""
+        begin = len(self.codes)
+        order = walk(roots)
+        uses = collections.Counter(id(one) for one in (*(a for node in order for a in node.args), *roots))
+        free = list(range(_core.tape_registers))[::-1]
+        register: dict[int, int] = {}
+        for node in order:
+            arguments = [register[id(a)] for a in node.args]
+            for argument in node.args:
+                uses[id(argument)] -= 1
+            for argument in dict.fromkeys(map(id, node.args)):
+                if uses[argument] == 0:
+                    free.append(register[argument])
+            # products read their arguments after they have stored something
+            unread = free if node.op != "dot" else [r for r in free if r not in arguments]
+            if len(unread) < (2 if node.op == "dot" else 1):
+                raise _refuse("one of its functions needs more intermediate values than the interpreter has")
+            to = register[id(node)] = unread[-1]
+            term = unread[-2] if node.op == "dot" else to
+            free.remove(to)
+            self._operation(node, arguments, to, term)
+        for root, (code, number) in zip(roots, stores):
+            self._emit(code, register[id(root)], number)
+        self.functions[-1].append((begin, len(self.codes)))
+
+    def series(self, several: Iterable[Callable[[], None]]) -> None:
+        """Functions of which a model has several."""
+        self.functions.append([])
+        for write in several:
+            write()
+
+    def value(self, root: Node | None) -> None:
+        """A function with one result, or an empty one."""
+        self.function([] if root is None else [root], [] if root is None else [("store_result", 0)])
+
+    def triggered(self, edge: Edge, model: RecordedModel) -> None:
+        """What happens where the condition of a trigger comes to hold."""
+        one = edge.starts
+        if one is None:
+            self.function([constant(0.0)], [("store_drop", edge.drops)])
+        elif model.queue is None:
+            self.hook(one.do, f"trigger {one.name}")
+        else:
+            due = sym.time if one.delay is None else sym.time + one.delay
+            self.function([*one.values, due], [*(("store_waiting", v) for v in range(len(one.values))),
+                                               ("store_put", model.triggers.index(one))])
+
+    def hook(self, assignments: Assignments, what: str) -> None:
+        """A hook, from its assignments [(target, value)]."""
+        stores = []
+        for target, _ in assignments:
+            kind, name = target.value
+            if kind == "action":
+                if name == "end_instance" and what == "after_step":
+                    raise _refuse("after_step ends instances")
+                stores.append((f"store_{name}", 0))
+            elif kind == "built-in":
+                if name != "next_step":
+                    raise _refuse(f"{what} assigns {name}")
+                stores.append(("store_next_step", 0))
+            else:
+                stores.append((f"store_{kind}", self.place[name][1]))
+        self.function([value for _, value in assignments], stores)

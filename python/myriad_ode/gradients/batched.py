@@ -1,0 +1,203 @@
+# SPDX-License-Identifier: MIT
+"""A model as a function of some of its components, for one set of values or many: for optimisers, samplers, and, by
+`to_jax` and `to_torch`, for automatic differentiation."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..base.errors import Error
+from ..base.statuses import first_failure
+from ..kernels.devices import device_names
+from ..models import state_jumps
+from ..models.components import Components, listed, unknown
+from ..sweeps.inputs import whole
+from ..symbolic.symbols import time as time_symbol
+from .adjoint import Adjoint
+from .forward import forward_of, refuse_chosen
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from ..models.any_model import AnyModel
+    from ..results.run import Run
+    from ..symbolic.types import Array, ByComponent, Component, SomeComponents, Values
+
+__all__ = ["Batched", "batched"]
+
+
+class Batched:
+    """A function of values of the components `by`, in the last axis of its argument, whose other axes are those of a
+    batch: all of it is integrated by one call of `solve`. The result has the axes of the batch, one of the samples, if
+    any were asked for, and one of the quantities `of`. It is NaN for instances that have failed."""
+
+    def __init__(self, model: AnyModel, by: SomeComponents, of: SomeComponents, sweep: ByComponent | None,
+                 start: ByComponent | None, options: Mapping[str, Any], adjoint: bool = False) -> None:
+        components = Components(model)
+        self.model = model
+        self.by = [components.component(one) for one in listed(by)]  #: names of the components that vary
+        self.of: list[Component] = [one if one is time_symbol else components.component(one) for one in listed(of)]
+        self._forward = forward_of(model, self.by, "by=", sweep, start, options)
+        if len(set(self.by)) < len(self.by) or not self.by or not self.of:
+            raise Error(f"by= names {self.by!r} and of= {self.of!r}: name at least one component each, none twice in "
+                        "by=")
+        results = [*components.states, *components.of(("accessory",)), *components.outputs]
+        for one in self.of:
+            if one is not time_symbol and one not in results:
+                raise unknown(str(one), results, "state, accessory or output that can be a result")
+        refuse_chosen(options, ("record", "sensitivities", "size"), "a batched function")
+        self._of_states = all(one is not time_symbol and one in components.states for one in self.of)
+        samples = self._option("samples", None)
+        self.n_samples = None if samples is None else self._count(samples)  #: None without samples
+        if self.n_samples is not None and any(one is time_symbol for one in self.of):
+            raise Error("of= has the time at which the last phase ended, which has no samples: leave out samples=")
+        #: of `vjp`; None for forward sensitivities
+        self.adjoint = Adjoint(model, self.by, self.of, self._forward.sweep, self._forward.start,
+                               self._forward.plain_options(), samples) if adjoint else None
+
+    @staticmethod
+    def _count(samples: Any) -> int:
+        if isinstance(samples, Mapping):
+            raise Error("samples= of a batched function is a number of evenly spaced times, or an array of times")
+        return whole(samples, "samples", 1 << 40) if np.ndim(samples) == 0 else len(samples)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The shape of the result for one set of values."""
+        return (len(self.of),) if self.n_samples is None else (self.n_samples, len(self.of))
+
+    def _option(self, name: str, usual: Any) -> Any:
+        options = self._forward.options
+        common = options.get("options")
+        return options.get(name, usual if common is None else getattr(common, name, usual))
+
+    @property
+    def real(self) -> np.dtype[Any]:
+        """The type of the numbers that it integrates."""
+        return np.dtype("f4" if self._option("precision", "double") == "float" else "f8")
+
+    @property
+    def gpu(self) -> int | None:
+        """The number of the GPU that takes values of the type `real` in its memory, and keeps the results there; None
+        if they have to be on the host, as where results are no states."""
+        needs_host = self._option("make_consistent", False) or self._option("invalid", "refuse") == "mark"
+        if needs_host or not self._of_states:
+            return None
+        names, _ = device_names(self._option("device", "auto"), self._option("interpreted", None))
+        return int(names[0].partition(":")[2]) if len(names) == 1 and names[0].startswith("cuda") else None
+
+    def run(self, values: Any, sensitivities: bool = False) -> Run:
+        """The run of sets of values in the rows of an array, of NumPy's or on a GPU."""
+        return self._forward.run(self._forward.of_rows(values), sensitivities)
+
+    def run_columns(self, columns: Sequence[Any], sensitivities: bool = False) -> Run:
+        """The same of one array of values for each component of by=."""
+        return self._forward.run(dict(zip(self.by, columns)), sensitivities)
+
+    def check_derivatives(self) -> None:
+        """Refuses derivatives of a model that jumps where they leave that out."""
+        state_jumps.refuse(self.model, "derivative")
+
+    def _rows(self, values: Values) -> tuple[Array, tuple[int, ...]]:
+        array = np.asarray(values)
+        if array.ndim == 0 or array.shape[-1] != len(self.by):
+            raise Error(f"the argument has the shape {array.shape}: its last axis has the values of "
+                        f"{', '.join(self.by)}, {len(self.by)} in number")
+        if array.dtype.kind not in "fiu":
+            raise Error(f"the argument has the type {array.dtype}: give real numbers")
+        return np.ascontiguousarray(array.reshape(-1, len(self.by)), dtype=float), array.shape[:-1]
+
+    def _stacked(self, arrays: Iterable[Array], run: Run) -> Array:
+        """Arrays [row, ...] as one [array, ..., row], as the run has them in memory; NaN where an instance has
+        failed."""
+        found = np.stack([array.T for array in arrays])
+        if (failed := run.status >= first_failure).any():
+            found[..., failed] = np.nan
+        return found
+
+    def _values(self, run: Run, batch: tuple[int, ...]) -> Array:
+        found = self._stacked((run.t if one is time_symbol else run[one] for one in self.of), run)
+        return found.T.reshape(*batch, *self.shape)
+
+    def __call__(self, values: Values) -> Array:
+        """The results for one set of values, or for those of a batch."""
+        rows, batch = self._rows(values)
+        return self._values(self.run(rows), batch)
+
+    def with_jacobian(self, values: Values) -> tuple[Array, Array]:
+        """The results, and their derivatives by the values, along one more axis behind those of the results. What has
+        no derivative is NaN."""
+        self.check_derivatives()
+        rows, batch = self._rows(values)
+        run = self.run(rows, sensitivities=True)
+        slopes = self._stacked((run.sensitivity[one, k] for k in self.by for one in self.of), run)
+        slopes = slopes.reshape(len(self.by), len(self.of), *slopes.shape[1:])
+        return self._values(run, batch), slopes.T.reshape(*batch, *self.shape, len(self.by))
+
+    def vjp(self, values: Values, weights: Values | Callable[[Array], Any]) -> tuple[Array, Array]:
+        """The results, and the derivatives by the values of a loss that depends on the results: a product of a vector
+        and the Jacobian. `weights` are the loss's derivatives by the results, of their shape, or a function that
+        returns them for results of some rows, [row, time, quantity] or [row, quantity]. With `adjoint=True` the cost
+        hardly depends on the number of values; else it is that of `with_jacobian`. Instances that have failed have
+        NaN."""
+        rows, batch = self._rows(values)
+        if self.adjoint is None:
+            results, jacobian = self.with_jacobian(rows)
+            given = weights(results) if callable(weights) else weights
+            flat = np.broadcast_to(np.asarray(given, float), (*batch, *self.shape)).reshape(len(rows), -1)
+            # a weight of zero counts nothing, though the derivative may not exist
+            counts_not = (flat == 0) & np.isfinite(results.reshape(flat.shape))
+            known = np.where(counts_not[:, :, None], 0.0, jacobian.reshape(len(rows), -1, len(self.by)))
+            gradient = (flat[:, None, :] @ known)[:, 0]
+        else:
+            if not callable(weights):
+                flat = np.broadcast_to(np.asarray(weights, float), (*batch, *self.shape)).reshape(-1, *self.shape)
+
+            def of_part(part: slice, found: Array) -> Array:
+                given = weights(found.reshape(-1, *self.shape)) if callable(weights) else flat[part]
+                return np.broadcast_to(np.asarray(given, float), (len(found), *self.shape)).reshape(found.shape)
+
+            results, gradient, _ = self.adjoint.gradient(rows, of_part)
+        return results.reshape(*batch, *self.shape), gradient.reshape(*batch, len(self.by))
+
+    def to_jax(self) -> Callable[[Any], Any]:
+        """The function for JAX arrays, under `jit`, `vmap`, `grad`, `jvp` and `vjp`; a batch by `vmap` is one call of
+        `solve`. The derivatives are along the solution, with its tolerances; there are no second ones. Results have the
+        type of the argument: double precision needs `jax.config.update("jax_enable_x64", True)`. Arrays on the GPU
+        that integrates stay there if they have the type of the integration and all of of= are states; others go by the
+        host. Needs the package jax. JAX keeps the function for as long as the process runs."""
+        from .jax_adapter import jax_function
+
+        return jax_function(self)
+
+    def to_torch(self) -> Callable[[Any], Any]:
+        """The function for PyTorch tensors, which `backward`, `torch.func.grad`, `jacrev` and `vmap` take; a batch is
+        one call of `solve`. There are no second derivatives. Tensors on the GPU that integrates stay there. Needs the
+        package torch."""
+        from .torch_adapter import torch_function
+
+        return torch_function(self)
+
+    def __repr__(self) -> str:
+        return f"<myriad_ode.Batched of {self.model!r} by {', '.join(self.by)}>"
+
+
+def batched(model: AnyModel, *, by: SomeComponents, of: SomeComponents, sweep: ByComponent | None = None,
+            start: ByComponent | None = None, adjoint: bool = False, **options: Any) -> Batched:
+    """The model as a function of values of some components, in arrays.
+
+    by        the components that vary, parameters and initial states: the last axis of the argument
+    of        states, accessories, outputs, or `my.time` for the time at which the last phase ended: the last axis
+              of the result
+    sweep     the other parameters and shared values, one number each
+    start     the other initial states, one number each
+    adjoint   whether gradients are computed by an adjoint, whose cost hardly depends on the number of components that
+              they are by: those of `vjp`, and in JAX and PyTorch those of reverse mode, beside which there is no other
+              then
+    options   of `solve`, as time=, samples=, method=, rtol=, device=, sensitivity_control=
+
+    The argument has any number of axes before the last, all of which are integrated at once."""
+    return Batched(model, by, of, sweep, start, options, adjoint)

@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: MIT
+"""Reductions over all instances of a study, which need not keep what they reduce: `reduce=` of `my.study`.
+
+Variables are named as in results: "x" at recorded phases, "x_end" at the end, "x_sample". Instances that failed are
+left out, but by `total`. Results do not depend on how the instances are divided into chunks, bit for bit."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .. import _core
+from ..base.errors import Error
+from ..symbolic.axes import Axis
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+__all__ = ["histogram", "histograms", "maximum", "mean", "minimum", "quantiles", "total"]
+
+
+class Reduction:
+    """A reduction, made by the functions of this module."""
+
+    def __init__(self, kind: str, *arguments: Any) -> None:
+        self.kind, self.arguments = kind, arguments
+
+    def core(self) -> _core.Reduction:
+        """The reduction for the core."""
+        arguments = [a.core() if isinstance(a, Axis) else a for a in self.arguments]
+        return getattr(_core, self.kind)(*arguments)
+
+    def __repr__(self) -> str:
+        return f"{self.kind}({', '.join(map(repr, self.arguments))})"
+
+
+def _variable(name: object) -> str:
+    if not isinstance(name, str):
+        raise Error(f"a reduction is asked for of {name!r}: give the name of a variable of the results, as \"x_end\"")
+    return name
+
+
+class _Values(Axis):
+    """Values as they are given."""
+
+    def core(self) -> _core.AxisValues:
+        return _core.values(list(self.arguments))
+
+
+def _edges(edges: Axis | npt.ArrayLike) -> Axis:
+    return edges if isinstance(edges, Axis) else _Values("values", *np.asarray(edges, dtype=float).tolist())
+
+
+def histogram(variable: str, edges: Axis | npt.ArrayLike) -> Reduction:
+    """How many values lie between neighbouring edges, as numpy.histogram: "x_end_histogram" along "x_end_bin"; and
+    "x_end_outside", how many lie below, above, and are not finite."""
+    return Reduction("histogram_of", _variable(variable), _edges(edges))
+
+
+def histograms(variable: str, edges: Axis | npt.ArrayLike) -> Reduction:
+    """A histogram for each phase or sample: "x_sample_histograms" along "sample" and "x_sample_histograms_bin"; and
+    "x_sample_histograms_outside"."""
+    return Reduction("histograms_of", _variable(variable), _edges(edges))
+
+
+def quantiles(variable: str, quantiles: npt.ArrayLike, edges: Axis | npt.ArrayLike) -> Reduction:
+    """Quantiles, numbers from 0 to 1, for each phase or sample: "x_sample_quantiles", the quantile first, as bands of
+    percentiles over time. They are found by a histogram, to the width of a bin; NaN where one lies below the first edge
+    or above the last one."""
+    wanted = np.atleast_1d(np.asarray(quantiles, dtype=float)).tolist()
+    return Reduction("quantiles_of", _variable(variable), wanted, _edges(edges))
+
+
+def minimum(variable: str) -> Reduction:
+    """The smallest value, for each phase or sample: "x_end_minimum"."""
+    return Reduction("minimum_of", _variable(variable))
+
+
+def maximum(variable: str) -> Reduction:
+    """The largest value, for each phase or sample: "x_end_maximum"."""
+    return Reduction("maximum_of", _variable(variable))
+
+
+def mean(variable: str) -> Reduction:
+    """The mean, for each phase or sample: "x_end_mean". The sum is exact and rounded once."""
+    return Reduction("mean_of", _variable(variable))
+
+
+def total(name: str, inputs: str | Sequence[str], size: int, function: Callable[[dict[str, Any]], Any]) -> Reduction:
+    """The sum over chunks of `size` numbers that a function computes of each chunk: variable `name`. The function gets
+    a dict of arrays, the inputs by name and "status", with a row for each instance of the chunk, failed ones too, and
+    returns the numbers. `name` stands for it in the study's description: give another one when it changes. Threads take
+    turns in calling it; for executors it must pickle."""
+    inputs = [inputs] if isinstance(inputs, str) else list(inputs)
+    return Reduction("sum_of", _variable(name), [_variable(i) for i in inputs], int(size), function)

@@ -1,0 +1,348 @@
+# SPDX-License-Identifier: MIT
+"""Studies: ensembles of any size along axes by name, computed chunk by chunk, kept in a store in which they go on after
+a stop, and handed to any executor. The C++ library's `study` with a model of Python's."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import pickle
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from .. import _core
+from ..base.component_kinds import recorded as recorded_kinds, shared as shared_kinds
+from ..base.core_words import in_words, with_event_names
+from ..base.errors import Error
+from ..kernels import nvrtc
+from ..kernels.choose import kernel_for
+from ..kernels.devices import device_names
+from ..models import time_jumps
+from ..models.any_model import AnyModel
+from ..models.components import Components, listed, short_name
+from ..models.methods import default, fixed_step, method_type
+from ..models.once_per_phase import prepared
+from ..models.sensitivities import note_on
+from ..models.whole_numbers import check_whole_numbers
+from ..results.run import Interrupted
+from ..solving.core_options import finish_options, longest_step, make_options, options_of, takes_options
+from ..solving.gather import full_name, gather_axes, refuse_missing, refuse_shared
+from ..solving.options import Options, StudyArguments
+from ..solving.progress import ProgressDisplay
+from ..sweeps.inputs import by_name, only, path_text, real, text, whole
+from ..sweeps.sweep import Sweep
+from ..symbolic.axes import Axis, Random
+from ..symbolic.symbols import time as time_symbol
+from .executed_run import ExecutedRun
+from .reduce import Reduction
+from .result import StudyResult
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ..kernels.compiler import Kernel
+    from ..models.methods import Control, Method
+    from ..symbolic.types import ByComponent, Path, Precision, Progress, SomeComponents
+
+__all__ = ["Study", "study"]
+
+_keep_choices = ("end", "records", "samples", "random", "status", "work")
+
+
+class Study:
+    """A parameter study, made by `study`. `run` computes it."""
+
+    def __init__(self, model: AnyModel, sweep: Any, options: dict[str, Any]) -> None:
+        self._given, self._has_store = (model, sweep, options), False
+        self._build(model, sweep, **options)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Study, self._given
+
+    # -- What the study is --------------------------------------------------------------------------------------------
+
+    def _build(self, model: AnyModel, sweep: Sweep | ByComponent | None, *, start: ByComponent | None,
+               time: tuple[Any, Any] | None, keep: SomeComponents | Mapping[str, Any] | None,
+               reduce: Reduction | Sequence[Reduction], draws: int | None, seed: int, title: str,
+               units: Mapping[Any, str] | None, notes: Mapping[str, object] | None, method: Method | None,
+               control: Control | Sequence[Control], options: Options, precision: Precision,
+               interpreted: bool | None) -> None:
+        if not isinstance(model, AnyModel):
+            raise Error(f"the model is a {type(model).__name__}: make it by my.model(...)")
+        if precision not in ("double", "float"):
+            raise Error(f"precision is {precision!r}: give \"double\" or \"float\"")
+        chosen = default if method is None else method
+        if chosen in fixed_step and options.step is None:
+            raise Error(f"{chosen} takes fixed steps: give step=")
+        model = prepared(model)
+        components = self._components = Components(model)
+        samples = options.samples
+        times: Any = samples.get("times", ()) if isinstance(samples, Mapping) else samples
+        if np.ndim(times) > 1:
+            raise Error("a study has no sample times for each instance: give the same times for all, or a number of "
+                        "evenly spaced ones")
+        core_options, recorded, sampled = make_options(components, 0, options)
+        finish_options(core_options, options, components, len(components.states), len(components.events))
+        core_options.invalid_instances = "mark"
+        self._interpreted = interpreted
+        self._notes = [one for one in (time_jumps.note(model, longest_step(options)), note_on(model)) if one]
+        self._kernels: dict[str, Kernel] = {}
+        self._kernel_for = lambda device: kernel_for(device, model, components, chosen, control, samples is not None,
+                                                     precision, self._interpreted)
+        try:
+            made = self._core = _core.Study(
+                components.names, list(components.tables.values()),
+                model.generator, "float64" if precision == "double" else "float32",
+                model.name or "model",
+                method_type(chosen, control, samples is not None).replace("myriad::", ""))
+            made.options(core_options)
+            self._set_instances(made, components, sweep, start, time, draws)
+            self._looks_at_domains = bool(samples is not None or options.phase_length or options.carry_on)
+            if draws is not None:
+                made.repeat(whole(draws, "draws", 1 << 62), "draw")
+            made.seed(whole(seed, "seed", (1 << 63) - 1) & ((1 << 64) - 1))
+            check_whole_numbers(model.generate, made.size, self._shared_integers)
+            self._set_kept(made, components, keep, bool(recorded or sampled or reduce))
+            for reduction in reduce if isinstance(reduce, (list, tuple)) else [reduce] if reduce else []:
+                if not isinstance(reduction, Reduction):
+                    raise Error(f"reduce= has {reduction!r}: give reductions, as in "
+                                "[my.reduce.mean(\"x_end\")]")
+                made.reduce(reduction.core())
+            self._describe(made, components, model, title, units, notes)
+        except Error as error:
+            raise with_event_names(error, components.event_names) from None
+
+    def _describe(self, made: _core.Study, components: Components, model: AnyModel, title: str,
+                  units: Mapping[Any, str] | None, notes: Mapping[str, object] | None) -> None:
+        """What tells the study from others."""
+        for key, unit in by_name(units, "units", "units={x: \"m\"}").items():
+            name = "t" if key is time_symbol else full_name(components, key)
+            made.unit(name, text(unit, f"the unit of '{name}'"))
+        if title:
+            made.title(text(title, "the title"))
+        values = np.array(list(components.tables.values()), float)
+        made.note("model", hashlib.sha256(model.source()[0].encode() + values.tobytes()).hexdigest()[:32])
+        for key, value in by_name(notes, "notes", "notes={\"who\": \"...\"}").items():
+            key = text(key, "the key of a note")
+            made.note(f"user.{key}", text(value, f"the note '{key}'"))
+
+    def _set_instances(self, made: _core.Study, components: Components, sweep: Sweep | ByComponent | None,
+                       start: ByComponent | None, time: tuple[Any, Any] | None, draws: int | None) -> None:
+        """Axes, random values and values for all instances."""
+        axes, constants = gather_axes(components, sweep, start, time)
+        varying = [*(name for axis in axes for name in axis),
+                   *(name for name, value in constants.items() if isinstance(value, Random))]
+        given = {short_name(name) for name in (*constants, *varying)}
+        for name in components.generated:
+            if name in given:
+                raise Error(f"'{name}' is given to the study, and generate= of the model sets it: give it once")
+        refuse_missing(components, {*components.defaults, *components.generated, *given})
+        if components.generated and not axes and draws is None:
+            raise Error("the model generates its instances, and nothing says how many: give draws=")
+        self._own_domains = not {"t_begin", "t_end"}.isdisjoint(varying)
+        for name, value in self._defaults(components, constants, varying).items():
+            if name not in given:
+                made.set(full_name(components, name), value)
+        for axis in axes:
+            self._set_axis(made, axis)
+        self._shared_integers = {short_name(name): int(value) for name, value in constants.items()
+                                 if name.startswith("shared_integer.")}
+        for name, value in constants.items():
+            if isinstance(value, Random):
+                made.axis(name, value.core())
+            else:
+                made.set(name, float(value))
+
+    @staticmethod
+    def _set_axis(made: _core.Study, axis: Mapping[str, Any]) -> None:
+        """An axis, with all whose values go along it."""
+        for name, values in axis.items():
+            if len(values) == 0:
+                raise Error(f"'{short_name(name)}' has no values: a study has one instance or more; my.solve takes a "
+                            "sweep of none")
+            if name.partition(".")[0] in shared_kinds:
+                refuse_shared(short_name(name), values)
+        pairs = [(name, values.core() if isinstance(values, Axis) else
+                  _core.values(np.asarray(values, float).tolist())) for name, values in axis.items()]
+        if len(pairs) == 1:
+            made.axis(*pairs[0])
+        else:
+            made.zip(pairs)
+
+    @staticmethod
+    def _defaults(components: Components, constants: Mapping[str, Any], varying: Sequence[str]) -> dict[str, float]:
+        """The values of components that are not given, as numbers."""
+        ends = {"t_begin", "t_end"}
+        unknown = {short_name(name): np.nan for name in varying if name not in ends}
+        fixed = {short_name(name): value for name, value in constants.items()
+                 if name not in ends and not isinstance(value, Random)}
+        differ = {*unknown, *({"t"} if "t_begin" in varying else ())}
+        known = components.completed({**fixed, **unknown}, constants.get("t_begin", 0.0))
+        found = {n: v for n, v in known.items() if n in components.defaults and n not in components.tables}
+        for name in found:
+            if name not in fixed and name not in unknown and components.follows(name, differ, fixed):
+                raise Error(f"'{name}' follows from what differs between the instances of the study: give it in the "
+                            "sweep or in start=, or use my.solve")
+        return {n: float(v) for n, v in found.items() if v is not None and n not in unknown}
+
+    def _set_kept(self, made: _core.Study, components: Components, keep: Any, anything_else: bool) -> None:
+        if keep is None:
+            keep = {} if anything_else else {
+                "end": [name for name in components.of(recorded_kinds) if name not in components.hidden]}
+        elif not hasattr(keep, "items"):
+            keep = {"end": keep}
+        only(keep, _keep_choices, "keep=")
+        end = keep.get("end", ())
+        end = listed(end)
+        names = ["t" if key is time_symbol else full_name(components, key) for key in end]
+        made.keep(names, *(bool(keep.get(choice, choice != "work")) for choice in _keep_choices[1:]))
+
+    @property
+    def size(self) -> int:
+        """The number of instances."""
+        return self._core.size
+
+    def __len__(self) -> int:
+        return self.size
+
+    def __repr__(self) -> str:
+        return f"<myriad study of {self.size} instances>"
+
+    # -- The run ------------------------------------------------------------------------------------------------------
+
+    def _use(self, devices: Sequence[str], chunk: int | None) -> None:
+        """Sets the devices of the next run, and gets their kernels."""
+        for device in devices:
+            if device not in self._kernels:
+                if device.startswith("cuda"):
+                    if self._components.generated and self._own_domains and self._looks_at_domains:
+                        raise Error("the model generates its instances, and each has a time domain of its own, which a "
+                                    "GPU cannot look at for samples=, phase_length= or carry_on=: use device=\"cpu\", "
+                                    "or give the same time= to all")
+                    nvrtc.load_study_kernels(int(device.partition(":")[2]))
+                self._kernels[device], names = self._kernel_for(device)
+                self._core.add_kernel(device, self._kernels[device].library, names)
+        self._runs_interpreted = any(self._kernels[d].origin.startswith("interpreted") for d in devices)
+        self._core.note("kernel", "interpreted" if self._runs_interpreted else "compiled")
+        self._core.set_run(devices, whole(chunk or 0, "chunk", 1 << 62))
+
+    def run(self, store: Path | None = None, *, device: str | Sequence[str] = "auto", chunk: int | None = None,
+            executor: Any = None, check: Literal["sizes", "checksums"] = "sizes", expiry: float = 60,
+            arithmetic: Literal["same", "any"] = "same", progress: Progress = None) -> StudyResult:
+        """Computes what is not there yet, and returns a `StudyResult`.
+
+        store      a folder, in which the study goes on if it is run again, also by several processes at a time, each
+                   with this call; it is a Zarr group (version 3). None: results are in memory
+        device     a device or a list of devices, which are used at the same time: "cpu", "cpu:4", "cuda", "cuda:1", or
+                   "auto", which is as in `solve`; with an executor the devices of each worker, by default "cpu:1"
+        chunk      instances that are computed and stored together; None: by memory and number. A store keeps its own
+        executor   any executor of `concurrent.futures`, as ProcessPoolExecutor or one of Dask, loky, mpi4py and
+                   Parsl: its workers compute chunks, and send their values here, where they are kept
+        check      what is looked at of a store that exists: "sizes" of files, or "checksums", for which all is read
+        expiry     seconds after which chunks of a process on another machine that gives no sign of life are taken over;
+                   infinity: never
+        arithmetic "same": a store that another instruction set, compiler or library began is refused, since results
+                   differ in their last digits; "any": it is gone on with, and `warnings` says so
+        progress   True for a bar, or a function of the numbers of instances done and of all
+
+        A GPU that fails is left out with a warning, and its chunks are done by the other devices. GPUs of one kind give
+        the same bits; a CPU's results differ by rounding errors.
+
+        Ctrl-C ends a run when the chunks under way are done, or after ten seconds, and raises `my.Interrupted`,
+        whose `run` has what is done; so does the store, in which the next run goes on. Raises `my.Error` if the
+        store is of another study, with what differs, if a disk is full, and if a worker of an executor dies; what was
+        done stays in the store, and of an executor's run `error.result` has it."""
+        if check not in ("sizes", "checksums"):
+            raise Error(f"check is {check!r}: give \"sizes\" or \"checksums\"")
+        if arithmetic not in ("same", "any"):
+            raise Error(f"arithmetic is {arithmetic!r}: give \"same\" or \"any\"")
+        folder = "" if store is None else os.path.abspath(path_text(store))
+        if device == "auto" and executor is not None:
+            device = "cpu:1"
+        devices, no_gpu = device_names(device, self._interpreted)
+        show = ProgressDisplay(progress)
+        try:
+            if not folder and self._has_store:  # from an earlier run
+                self._build(*self._given[:2], **self._given[2])
+            seconds = real(expiry, "expiry")
+            if not seconds >= 1e-3:
+                raise Error(f"expiry is {expiry!r}: give seconds, 0.001 or more, or infinity for never")
+            self._core.set_store(folder, min(seconds, 1e9), check == "checksums", arithmetic == "any")
+            self._has_store = bool(folder)
+            if executor is not None:
+                return ExecutedRun(self, executor, devices, chunk, folder or None, show).run()
+            self._use(devices, chunk)
+            (results, facts), failure = self._core.run(show)
+            result = self._result(results, facts, folder or None, [*([no_gpu] if no_gpu else []), *self._notes])
+            if failure is not None:
+                if isinstance(failure, KeyboardInterrupt):
+                    raise Interrupted(result) from None
+                raise failure
+            return result
+        except Error as error:
+            raise with_event_names(error, self._components.event_names) from error.__cause__
+        finally:
+            show.close()
+
+    def _result(self, results: _core.Results, facts: Mapping[str, Any], folder: str | None,
+                notes: Iterable[str] = ()) -> StudyResult:
+        origins = dict.fromkeys(kernel.origin for kernel in self._kernels.values())
+        return StudyResult(results, folder, {**facts, "kernel": ", ".join(origins),
+                                              "notes": [*map(in_words, facts["notes"]), *notes]})
+
+    def payload(self) -> bytes:
+        """This study as bytes, for other processes, which are to run the same kernel. By cloudpickle if it is there,
+        which takes functions of scripts along."""
+        try:
+            import cloudpickle as by
+        except ImportError:
+            by = pickle
+        model, sweep, options = self._given
+        try:
+            return by.dumps((Study, (model, sweep, {**options, "interpreted": self._runs_interpreted})))
+        except Exception as error:
+            raise Error("the study cannot be sent to the workers of an executor, as it does not pickle: "
+                        f"{error}") from None
+
+
+@takes_options(StudyArguments)
+def study(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: ByComponent | None = None,
+          time: tuple[Any, Any] | None = None, keep: SomeComponents | Mapping[str, Any] | None = None,
+          reduce: Reduction | Sequence[Reduction] = (), draws: int | None = None, seed: int = 0, title: str = "",
+          units: Mapping[Any, str] | None = None, notes: Mapping[str, object] | None = None,
+          method: Method | None = None,
+          control: Control | Sequence[Control] = (), options: Options | None = None, precision: Precision = "double",
+          interpreted: bool | None = None, **others: Unpack[StudyArguments]) -> Study:
+    """A parameter study of a model: a `Study`, which `.run(...)` computes, in memory that does not grow with its size.
+    What `generate=` of the model sets is given neither in the sweep nor in start.
+
+    sweep     as in `solve`: `my.grid(...)` for all combinations of its axes, or a dict whose arrays go together.
+              Besides arrays and numbers, values are `my.linspace(a, b, n)`, `my.geomspace(a, b, n)`, of which
+              none is stored, and `my.uniform(a, b)`, `my.normal(mean, deviation)`, which draw a
+              value for each instance. States and `my.t_begin`, `my.t_end` may have axes too
+    start     initial values, as in `solve`
+    time      begin and end; None for one that is in the sweep
+    keep      components whose last values are kept, `my.time` for the time at which the last phase ended; or
+              `dict(end=, records=, samples=, random=, status=, work=)`, of which all but work are True: whether
+              records, samples, random values,
+              statuses, and the numbers of steps are kept. By default all states and accessories
+              if nothing is recorded, sampled or reduced
+    reduce    reductions over all instances: `my.reduce.mean("x_end")` and others
+    draws     instances for each point of the other axes, as for random values
+    seed      of random values: those along axes depend on it, the component and the instance's number alone, and those
+              that `generate=` of the model draws on it, the draw and the instance's number
+    units     {component: unit} for results; notes: {key: text}, anything that tells this study from others, such as the
+              version of data: a store that was made with other notes is refused
+
+    method, control, precision, interpreted, options, record, samples, events, rtol and atol are as in `solve`.
+    Inputs that are not finite mark their instances as invalid_input. Results have the C++ library's names: "x"
+    at recorded phases, "x_sample", "x_end", "t_last", "status"; of initial values of states "x_begin". Raises
+    `my.Error`.
+
+    The options:"""
+    return Study(model, sweep, dict(
+        start=start, time=time, keep=keep, reduce=reduce, draws=draws, seed=seed, title=title, units=units, notes=notes,
+        method=method, control=control, options=options_of(options, others, study), precision=precision,
+        interpreted=interpreted))
