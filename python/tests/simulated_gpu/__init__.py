@@ -10,10 +10,19 @@ import sys
 _here = pathlib.Path(__file__).parent
 
 
+def _command(*more):
+    from myriad_ode.kernels import nvrtc
+    return ["g++", "-std=c++20", "-O1", "-DNDEBUG", "-DMYRIAD_OUT_OF_LINE", "-fPIC", "-ffp-contract=off", "-w",
+            f"-I{nvrtc._include}", *map(str, more)]
+
+
 def build_driver(folder):
-    """Makes the driver in a folder."""
+    """Makes in a folder the driver, and a precompiled header of what every program includes."""
     subprocess.run(["g++", "-std=c++20", "-O1", "-shared", "-fPIC", "-Wl,-soname,libcuda.so.1", "-o",
                     str(folder / "libcuda.so.1"), str(_here / "driver.cpp"), "-ldl"], check=True)
+    header = folder / "programs.hpp"
+    header.write_text(f'#include "{_here}/device.hpp"\n#include <myriad/python/device_program.cuh>\n')
+    subprocess.run(_command("-x", "c++-header", header, "-o", f"{header}.gch"), check=True)
 
 
 # The kernels that a program has if it includes a header.
@@ -33,15 +42,15 @@ class Compiler:
 
     def compile(self, source, capability, options=()):
         """A program of the simulated driver, and what the compiler says."""
-        from myriad_ode.kernels import cache, nvrtc
+        from myriad_ode.kernels import cache
         kernels = [name for header, names in _kernels.items() if header in source for name in names]
-        source = "\n".join([f'#include "{_here}/device.hpp"', source, "SIMULATED_PROGRAM",
+        source = "\n".join([source, "SIMULATED_PROGRAM",
                             *(f"SIMULATED_KERNEL({name})" for name in kernels), ""])
         made = cache.directory() / f"simulated-{os.getpid()}.so"
         made.parent.mkdir(parents=True, exist_ok=True)
-        done = subprocess.run(["g++", "-std=c++20", "-O1", "-DNDEBUG", "-shared", "-fPIC", "-ffp-contract=off", "-w",
-                               f"-I{nvrtc._include}", "-x", "c++", "-", "-o", str(made)], input=source, text=True,
-                              capture_output=True)
+        header = pathlib.Path(os.environ["LD_LIBRARY_PATH"]) / "programs.hpp"
+        done = subprocess.run(_command("-shared", "-include", header, "-x", "c++", "-", "-o", made), input=source,
+                              text=True, capture_output=True)
         if done.returncode != 0:
             raise RuntimeError(done.stderr)
         return made.read_bytes(), done.stderr
