@@ -240,7 +240,7 @@ def read_classes(folder):
         kind, name = entry.get("kind"), plain(entry.find("name"))
         if kind not in ("namespace", "class", "struct", "concept") or not re.match(r"myriad(::|$)", name):
             continue
-        internal = re.match(r"myriad::(detail|host|studies|openmp|cuda|target)\b", name)
+        internal = re.match(r"myriad::(detail|host|studies|openmp|cuda|gpu|target)\b", name)
         if internal and name not in PUBLIC_ELSEWHERE and (kind != "namespace" or name != "myriad::studies"):
             continue
         root = ElementTree.parse(folder / (entry.get("refid") + ".xml")).getroot().find("compounddef")

@@ -24,6 +24,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "compile.hpp"
+#include "cuda_driver.hpp"
 #include "myriad/host/chunks/idle_engines.hpp"
 #include "myriad/host/core/instruction_set.hpp"
 #include "myriad/host/options/option_table.hpp"
@@ -496,7 +497,7 @@ NB_MODULE(_core, m) {
     m.def("facts_of_device_array", &facts_of_device_array);
     m.def("facts_of_own_array", &facts_of_own_array);
     m.def("may_use_gpus", &host::may_use_gpus);
-    m.def("driver_version", &driver_version);
+    m.def("driver_version", &gpu::driver_version);
     m.def("interpreted_methods", &interpreted_methods);
 #define METHOD_NAME(method) #method,
     m.attr("methods") = std::vector<std::string>{MYRIAD_METHODS(METHOD_NAME)};

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: MIT
-// The part of the CUDA runtime that backends/cuda uses, on top of the driver's library, libcuda.so.1.
+// The GPU's runtime (gpu/runtime.hpp) on top of the driver's library, libcuda.so.1, which is loaded when it is first
+// asked for: the Python package is compiled without CUDA, and runs where there is none. Numbers are those of cuda.h.
+#include "cuda_driver.hpp"
+
 #include <array>
 #include <mutex>
 
-#include <cuda_runtime.h>
 #include <dlfcn.h>
+
+namespace myriad::gpu {
 
 namespace {
 
@@ -16,13 +20,13 @@ template <class... Arguments>
 class function {
 public:
     void find(void* library, const char* name) {
-        call_ = reinterpret_cast<cudaError_t (*)(Arguments...)>(dlsym(library, name));
+        call_ = reinterpret_cast<result (*)(Arguments...)>(dlsym(library, name));
     }
     bool exists() const { return call_ != nullptr; }
-    cudaError_t operator()(Arguments... a) const { return exists() ? call_(a...) : cudaErrorInsufficientDriver; }
+    result operator()(Arguments... a) const { return exists() ? call_(a...) : result::insufficient_driver; }
 
 private:
-    cudaError_t (*call_)(Arguments...) = nullptr;
+    result (*call_)(Arguments...) = nullptr;
 };
 
 /// CUDA_MEMCPY2D of cuda.h.
@@ -43,11 +47,11 @@ struct copy_of_rows {
 };
 
 struct driver {
-    cudaError_t status = cudaErrorInsufficientDriver;  // of loading it
+    result status = result::insufficient_driver;  // of loading it
 
     function<unsigned> init;
     function<int*> version;
-    function<cudaError_t, const char**> error_string, error_name;
+    function<result, const char**> error_string, error_name;
     function<int*> device_count;
     function<int*, int> device;
     function<char*, int, int> device_name;
@@ -66,20 +70,20 @@ struct driver {
     function<void*, std::size_t, unsigned> pin;
     function<void*> unpin;
     function<void*, int, device_pointer> pointer_attribute;
-    function<device_pointer, device_pointer, std::size_t, cudaStream_t> copy;
-    function<const copy_of_rows*, cudaStream_t> copy_rows;
-    function<device_pointer, unsigned char, std::size_t, cudaStream_t> set;
-    function<cudaStream_t*, unsigned> create_stream;
-    function<cudaStream_t> destroy_stream, wait_for_stream, query_stream;
-    function<cudaStream_t, cudaEvent_t, unsigned> wait_for_event;
-    function<cudaEvent_t*, unsigned> create_event;
-    function<cudaEvent_t> destroy_event, synchronize_event;
-    function<cudaEvent_t, cudaStream_t> record;
-    function<float*, cudaEvent_t, cudaEvent_t> elapsed;
+    function<device_pointer, device_pointer, std::size_t, stream_handle> copy;
+    function<const copy_of_rows*, stream_handle> copy_rows;
+    function<device_pointer, unsigned char, std::size_t, stream_handle> set;
+    function<stream_handle*, unsigned> create_stream;
+    function<stream_handle> destroy_stream, wait_for_stream, query_stream;
+    function<stream_handle, event_handle, unsigned> wait_for_event;
+    function<event_handle*, unsigned> create_event;
+    function<event_handle> destroy_event, synchronize_event;
+    function<event_handle, stream_handle> record;
+    function<float*, event_handle, event_handle> elapsed;
     function<int*, int, const void*> kernel_attribute;
     function<const void*, int, int> set_kernel_attribute;
     function<int*, const void*, int, std::size_t> occupancy;
-    function<const void*, unsigned, unsigned, unsigned, unsigned, unsigned, unsigned, unsigned, cudaStream_t, void**,
+    function<const void*, unsigned, unsigned, unsigned, unsigned, unsigned, unsigned, unsigned, stream_handle, void**,
              void**>
         launch;
     function<void**, const void*> load;
@@ -145,99 +149,99 @@ driver& the() {
 }
 
 constexpr int most_devices = 64;
+constexpr unsigned portable = 1;  // host memory for all devices
 
 /// The primary context of a device, which other users of the driver, such as the runtime, have too. Kept for good.
-cudaError_t primary_context(int device, context* found) {
+result primary_context(int device, context* found) {
     static std::array<context, most_devices> known{};
     static std::mutex mutex;
-    if (device < 0 || device >= most_devices) return cudaErrorInvalidDevice;
+    if (device < 0 || device >= most_devices) return result::invalid_device;
     const std::lock_guard lock(mutex);
     context& c = known[static_cast<std::size_t>(device)];
     if (c == nullptr) {
         int number = 0;
-        if (const auto status = the().device(&number, device); status != cudaSuccess) return status;
-        if (const auto status = the().retain_context(&c, number); status != cudaSuccess) return status;
+        if (const auto status = the().device(&number, device); status != result::success) return status;
+        if (const auto status = the().retain_context(&c, number); status != result::success) return status;
     }
     *found = c;
-    return cudaSuccess;
+    return result::success;
 }
 
 device_pointer number(const void* memory) { return reinterpret_cast<device_pointer>(memory); }
 
 }  // namespace
 
-const char* cudaGetErrorString(cudaError_t status) {
+const char* text_of(result status) {
     const char* text = nullptr;
     if (the().error_string.exists()) the().error_string(status, &text);
-    if (text == nullptr && status == cudaErrorInsufficientDriver)
+    if (text == nullptr && status == result::insufficient_driver)
         text = "there is no NVIDIA driver, or a very old one: libcuda.so.1 cannot be loaded";
     return text != nullptr ? text : "unknown error";
 }
-const char* cudaGetErrorName(cudaError_t status) {
+const char* name_of(result status) {
     const char* name = nullptr;
     if (the().error_name.exists()) the().error_name(status, &name);
     return name != nullptr ? name : "cudaErrorInsufficientDriver";
 }
+void forget_failure() {}  // the driver keeps none
 
-cudaError_t cudaGetDeviceCount(int* count) {
-    if (the().status != cudaSuccess) return the().status;
+result find_device_count(int* count) {
+    if (the().status != result::success) return the().status;
     return the().device_count(count);
 }
-cudaError_t cudaGetDevice(int* device) {
+result find_device(int* device) {
     *device = -1;
     context now = nullptr;
-    if (const auto status = the().current_context(&now); status != cudaSuccess || now == nullptr) return status;
+    if (const auto status = the().current_context(&now); status != result::success || now == nullptr) return status;
     return the().context_device(device);
 }
-cudaError_t cudaSetDevice(int device) {
+result set_device(int device) {
     context wanted = nullptr;
     if (device >= 0)
-        if (const auto status = primary_context(device, &wanted); status != cudaSuccess) return status;
+        if (const auto status = primary_context(device, &wanted); status != result::success) return status;
     return the().set_context(wanted);
 }
-cudaError_t cudaDeviceSynchronize() { return the().synchronize(); }
-cudaError_t cudaDeviceGetAttribute(int* value, cudaDeviceAttr attribute, int device) {
-    return the().device_attribute(value, attribute, device);
+result synchronise_device() { return the().synchronize(); }
+result find_attribute(int* value, device_attribute which, int device) {
+    constexpr int numbers[] = {16, 81, 97};
+    return the().device_attribute(value, numbers[static_cast<int>(which)], device);
 }
-cudaError_t cudaGetDeviceProperties(cudaDeviceProp* p, int device) {
-    constexpr int multiprocessors = cudaDevAttrMultiProcessorCount, major = 75, minor = 76;
+result find_properties(device_properties* p, int device) {
+    constexpr int major = 75, minor = 76;
     for (const auto status :
-         {the().device_name(p->name, sizeof p->name, device), the().device_memory(&p->totalGlobalMem, device),
-          the().device_attribute(&p->multiProcessorCount, multiprocessors, device),
+         {the().device_name(p->name, sizeof p->name, device), the().device_memory(&p->memory_bytes, device),
+          find_attribute(&p->multiprocessors, device_attribute::multiprocessors, device),
           the().device_attribute(&p->major, major, device), the().device_attribute(&p->minor, minor, device)})
-        if (status != cudaSuccess) return status;
-    return cudaSuccess;
+        if (status != result::success) return status;
+    return result::success;
 }
 
-cudaError_t cudaMalloc(void** memory, std::size_t bytes) {
+result allocate(void** memory, std::size_t bytes) {
     device_pointer p = 0;
     const auto status = the().allocate(&p, bytes);
     *memory = reinterpret_cast<void*>(p);
     return status;
 }
-cudaError_t cudaFree(void* memory) { return memory == nullptr ? cudaSuccess : the().release(number(memory)); }
-cudaError_t cudaMemGetInfo(std::size_t* free, std::size_t* total) { return the().memory_info(free, total); }
-cudaError_t cudaHostAlloc(void** memory, std::size_t bytes, unsigned flags) {
-    return the().allocate_host(memory, bytes, flags);
-}
-cudaError_t cudaFreeHost(void* memory) { return memory == nullptr ? cudaSuccess : the().release_host(memory); }
-cudaError_t cudaHostRegister(void* memory, std::size_t bytes, unsigned flags) {
-    return the().pin(memory, bytes, flags);
-}
-cudaError_t cudaHostUnregister(void* memory) { return the().unpin(memory); }
-cudaError_t cudaPointerGetAttributes(cudaPointerAttributes* attributes, const void* memory) {
+result release(void* memory) { return memory == nullptr ? result::success : the().release(number(memory)); }
+result find_memory(std::size_t* free, std::size_t* total) { return the().memory_info(free, total); }
+result allocate_pinned(void** memory, std::size_t bytes) { return the().allocate_host(memory, bytes, portable); }
+result release_pinned(void* memory) { return memory == nullptr ? result::success : the().release_host(memory); }
+result pin(void* memory, std::size_t bytes) { return the().pin(memory, bytes, portable); }
+result unpin(void* memory) { return the().unpin(memory); }
+result find_pinned(bool* pinned, const void* address) {
     constexpr int memory_type = 2;
+    constexpr unsigned of_host = 1;
     unsigned type = 0;
     // an error for memory that the driver does not know
-    const bool known = the().pointer_attribute(&type, memory_type, number(memory)) == cudaSuccess;
-    attributes->type = known ? static_cast<cudaMemoryType>(type) : cudaMemoryTypeUnregistered;
-    return cudaSuccess;
+    const bool known = the().pointer_attribute(&type, memory_type, number(address)) == result::success;
+    *pinned = known && type == of_host;
+    return result::success;
 }
-cudaError_t cudaMemcpyAsync(void* to, const void* from, std::size_t bytes, cudaMemcpyKind, cudaStream_t stream) {
+result copy(void* to, const void* from, std::size_t bytes, direction, stream_handle stream) {
     return the().copy(number(to), number(from), bytes, stream);
 }
-cudaError_t cudaMemcpy2DAsync(void* to, std::size_t to_pitch, const void* from, std::size_t from_pitch,
-                              std::size_t width, std::size_t height, cudaMemcpyKind, cudaStream_t stream) {
+result copy_rows(void* to, std::size_t to_pitch, const void* from, std::size_t from_pitch, std::size_t width,
+                 std::size_t height, direction, stream_handle stream) {
     constexpr unsigned found_by_address = 4;  // CU_MEMORYTYPE_UNIFIED
     copy_of_rows all;
     all.from_kind = all.to_kind = found_by_address;
@@ -249,60 +253,64 @@ cudaError_t cudaMemcpy2DAsync(void* to, std::size_t to_pitch, const void* from, 
     all.height = height;
     return the().copy_rows(&all, stream);
 }
-cudaError_t cudaMemsetAsync(void* memory, int value, std::size_t bytes, cudaStream_t stream) {
-    return the().set(number(memory), static_cast<unsigned char>(value), bytes, stream);
+result fill(void* memory, int byte, std::size_t bytes, stream_handle stream) {
+    return the().set(number(memory), static_cast<unsigned char>(byte), bytes, stream);
 }
 
-cudaError_t cudaStreamCreateWithFlags(cudaStream_t* stream, unsigned flags) {
-    return the().create_stream(stream, flags);
+result create_stream(stream_handle* stream) {
+    constexpr unsigned non_blocking = 1;
+    return the().create_stream(stream, non_blocking);
 }
-cudaError_t cudaStreamDestroy(cudaStream_t stream) { return the().destroy_stream(stream); }
-cudaError_t cudaStreamSynchronize(cudaStream_t stream) { return the().wait_for_stream(stream); }
-cudaError_t cudaStreamQuery(cudaStream_t stream) { return the().query_stream(stream); }
-cudaError_t cudaStreamWaitEvent(cudaStream_t stream, cudaEvent_t event, unsigned flags) {
-    return the().wait_for_event(stream, event, flags);
+result destroy_stream(stream_handle stream) { return the().destroy_stream(stream); }
+result synchronise(stream_handle stream) { return the().wait_for_stream(stream); }
+result query(stream_handle stream) { return the().query_stream(stream); }
+result wait_for(stream_handle stream, event_handle event) { return the().wait_for_event(stream, event, 0); }
+result create_event(event_handle* event, bool timed) {
+    constexpr unsigned disable_timing = 2;
+    return the().create_event(event, timed ? 0 : disable_timing);
 }
-cudaError_t cudaEventCreateWithFlags(cudaEvent_t* event, unsigned flags) { return the().create_event(event, flags); }
-cudaError_t cudaEventDestroy(cudaEvent_t event) { return the().destroy_event(event); }
-cudaError_t cudaEventRecord(cudaEvent_t event, cudaStream_t stream) { return the().record(event, stream); }
-cudaError_t cudaEventSynchronize(cudaEvent_t event) { return the().synchronize_event(event); }
-cudaError_t cudaEventElapsedTime(float* milliseconds, cudaEvent_t begin, cudaEvent_t end) {
+result destroy_event(event_handle event) { return the().destroy_event(event); }
+result record(event_handle event, stream_handle stream) { return the().record(event, stream); }
+result synchronise(event_handle event) { return the().synchronize_event(event); }
+result find_milliseconds(float* milliseconds, event_handle begin, event_handle end) {
     return the().elapsed(milliseconds, begin, end);
 }
 
-cudaError_t cudaFuncGetAttributes(cudaFuncAttributes* attributes, const void* kernel) {
+result find_attributes(kernel_attributes* attributes, const void* kernel) {
     constexpr int most_threads = 0, local_bytes = 3, registers = 4;
     int bytes = 0;
-    for (const auto status : {the().kernel_attribute(&attributes->maxThreadsPerBlock, most_threads, kernel),
-                              the().kernel_attribute(&attributes->numRegs, registers, kernel),
+    for (const auto status : {the().kernel_attribute(&attributes->most_threads, most_threads, kernel),
+                              the().kernel_attribute(&attributes->registers, registers, kernel),
                               the().kernel_attribute(&bytes, local_bytes, kernel)})
-        if (status != cudaSuccess) return status;
-    attributes->localSizeBytes = static_cast<std::size_t>(bytes);
-    return cudaSuccess;
+        if (status != result::success) return status;
+    attributes->local_bytes = static_cast<std::size_t>(bytes);
+    return result::success;
 }
-cudaError_t cudaFuncSetAttribute(const void* kernel, cudaFuncAttribute attribute, int value) {
-    return the().set_kernel_attribute(kernel, attribute, value);
+result allow_shared_bytes(const void* kernel, int bytes) {
+    constexpr int most_shared_bytes = 8;
+    return the().set_kernel_attribute(kernel, most_shared_bytes, bytes);
 }
-cudaError_t cudaOccupancyMaxActiveBlocksPerMultiprocessor(int* blocks, const void* kernel, int threads,
-                                                          std::size_t shared_bytes) {
+result prefer_shared_memory(const void* kernel, int percent) {
+    constexpr int shared_memory_carveout = 9;
+    return the().set_kernel_attribute(kernel, shared_memory_carveout, percent);
+}
+result find_resident_blocks(int* blocks, const void* kernel, int threads, std::size_t shared_bytes) {
     return the().occupancy(blocks, kernel, threads, shared_bytes);
 }
-cudaError_t cudaLaunchKernel(const void* kernel, dim3 blocks, dim3 threads, void** arguments, std::size_t shared_bytes,
-                             cudaStream_t stream) {
-    return the().launch(kernel, blocks.x, blocks.y, blocks.z, threads.x, threads.y, threads.z,
-                        static_cast<unsigned>(shared_bytes), stream, arguments, nullptr);
+result launch(const void* kernel, grid blocks, unsigned threads, void** arguments, std::size_t shared_bytes,
+              stream_handle stream) {
+    return the().launch(kernel, blocks.x, blocks.y, 1, threads, 1, 1, static_cast<unsigned>(shared_bytes), stream,
+                        arguments, nullptr);
 }
 
-namespace myriad::python {
-
-cudaError_t load_module(void** module, const void* image) { return the().load(module, image); }
-cudaError_t find_kernel(const void** kernel, void* module, const char* name) {
+result load_module(void** module, const void* image) { return the().load(module, image); }
+result find_kernel(const void** kernel, void* module, const char* name) {
     return the().kernel_of(kernel, module, name);
 }
 int driver_version() {
     int found = 0;
-    if (the().status == cudaSuccess) the().version(&found);
+    if (the().status == result::success) the().version(&found);
     return found;
 }
 
-}  // namespace myriad::python
+}  // namespace myriad::gpu

@@ -10,8 +10,6 @@
 #include <string>
 #include <vector>
 
-#include <cuda_runtime.h>
-
 #include "myriad/cuda/study_engine.cuh"
 #include "myriad/host/backend/device.hpp"
 #include "myriad/host/chunks/idle_engines.hpp"

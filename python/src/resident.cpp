@@ -19,11 +19,10 @@ using detail::array_kind;
 namespace {
 
 /// Launches a kernel whose threads take several of so many values each.
-cudaError_t launch_over(const void* kernel, std::int64_t size, void** arguments, cudaStream_t stream) {
+gpu::result launch_over(const void* kernel, std::int64_t size, void** arguments, gpu::stream_handle stream) {
     constexpr std::int64_t threads = 256, per_block = 8 * threads, most_blocks = 512;
     const std::int64_t blocks = std::min((size + per_block - 1) / per_block, most_blocks);
-    return cudaLaunchKernel(kernel, dim3(static_cast<unsigned>(blocks)), dim3(static_cast<unsigned>(threads)),
-                            arguments, 0, stream);
+    return gpu::launch(kernel, {static_cast<unsigned>(blocks)}, threads, arguments, 0, stream);
 }
 
 }  // namespace
@@ -79,9 +78,9 @@ void resident<R>::take_inputs(const ensemble<R>& instances, bool mark_invalid) {
     scratch_.reserve(sizeof(host::work_count));  // for `work` too, as to get memory anew takes longer than to copy
     for (const device_input<R>& input : instances.on_device) {
         std::byte* const to = engine_->find(call_->arguments, input.component).address;
-        MYRIAD_CUDA(cudaMemcpyAsync(to, input.values, static_cast<std::size_t>(size) * sizeof(R),
-                                    cudaMemcpyDeviceToDevice, stream));
-        MYRIAD_CUDA(cudaMemsetAsync(scratch_.data(), 0xff, sizeof none, stream));
+        MYRIAD_GPU_CALL(
+            gpu::copy(to, input.values, static_cast<std::size_t>(size) * sizeof(R), gpu::direction::on_device, stream));
+        MYRIAD_GPU_CALL(gpu::fill(scratch_.data(), 0xff, sizeof none, stream));
         void *values = to, *first = scratch_.data();
         std::int64_t count = size;
         void* arguments[] = {&values, &count, &first};
@@ -121,7 +120,7 @@ host::work_count resident<R>::work() {
     const auto stream = engine_->in_stream();
     const cuda::current_device here(number());
     scratch_.reserve(sizeof sums);
-    MYRIAD_CUDA(cudaMemsetAsync(scratch_.data(), 0, sizeof sums, stream));
+    MYRIAD_GPU_CALL(gpu::fill(scratch_.data(), 0, sizeof sums, stream));
     std::int64_t size = a.size;
     for (std::size_t c = 0; c < sums.size(); ++c) {
         if (counters[c] == nullptr) continue;

@@ -128,7 +128,7 @@ struct tape_size {
 #define MYRIAD_TAPE_SIZES(X)                   \
     X(small, 8, 16, 6, 3, 3, 0, 0, false)      \
     X(large, 128, 128, 128, 8, 64, 0, 0, true) \
-    X(with_triggers, 128, 128, 512, 256, 64, 3, 64, true)
+    X(with_triggers, 128, 128, 512, 256, 64, 3, 128, true)
 namespace tape_sizes {
 #define MYRIAD_TAPE_SIZE(name, ...) using name = tape_size<__VA_ARGS__>;
 MYRIAD_TAPE_SIZES(MYRIAD_TAPE_SIZE)

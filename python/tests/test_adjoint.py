@@ -244,7 +244,7 @@ def test_jax_and_torch_take_gradients_by_an_adjoint():
     (my.with_tangents(driven), {}, "not traced from Python"),
     (my.model({x: -a * x, y: b - y}, mass_matrix={y: 0}), {}, "a mass matrix"),
     (my.model({x: -a * x, y: b * x}, after_step={x: my.maximum(x, 0)}), {}, "has hooks or accessories"),
-    (my.model({x: -a * x, y: b * x}, triggers=my.trigger(x < 0.5, do={y: 0})), {}, "has triggers"),
+    (my.model({x: -a * x, y: b * x}, triggers=my.trigger(x < 0.5, delay=1, do={y: 0})), {}, "has triggers that wait"),
     (my.model({x: -a * x, y: x}, events=my.event(x - b, name="hit", stop_after=1)), {}, "the event 'hit' ends phases"),
     (my.model({x: -a * x, y: x}, events=my.event(x - b, name="hit", do={my.end_phase: True})), {}, "assigns end_phase"),
     (my.model({x: -a * x, y: x}, events=my.event(x - b, name="hit", do={y: my.step})), {}, "reads step"),

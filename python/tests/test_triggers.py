@@ -32,7 +32,7 @@ def after(model, to=10, values=None, interpreted=True, **options):
 def test_an_action_runs_where_a_condition_comes_to_hold(condition, expected):
     run = after(ramp(my.trigger(condition, do=noted), parameters=["lag"]), values={"lag": 3})
     assert run["count"] == len(expected)
-    np.testing.assert_allclose(run["at"], expected[-1] if expected else -1, rtol=1e-9)
+    np.testing.assert_allclose(run["at"], expected[-1] if len(expected) else -1, rtol=1e-9)
 
 
 def test_a_condition_of_whole_numbers_and_of_states_that_only_events_change():
@@ -41,6 +41,32 @@ def test_a_condition_of_whole_numbers_and_of_states_that_only_events_change():
                  stops=steps)
     run = after(model)
     assert run["at"] == 2 and run["log"] == 1
+
+
+@pytest.mark.parametrize("condition, expected", [
+    (x == 2, [2]), (x != 2, [2]), (my.sin(my.time) == 0.5, np.pi / 6 * np.array([1, 5, 13, 17])),
+    ((x == 2) & (my.time < 1), []), ((x == 2) | (my.time > 5), [2, 5]), (y == 3, [4]), (my.floor(my.time) == 3, [3]),
+    (my.where(x > 3, x, 10) < 5, [3])])
+@pytest.mark.parametrize("delay", [None, 0.5])
+def test_a_condition_may_hold_or_fail_for_an_instant(condition, expected, delay):
+    moves = my.trigger(x >= 4, do={y: 3})  # from where it moves on
+    once = my.trigger(condition, do=noted, delay=delay)
+    run = after(my.model({x: 1, y: my.where(y > 2.5, 1, 0)}, triggers=[once, moves], accessories={
+        count: 0, at: -1, log: 0}, name="ramp"))
+    assert run["count"] == len(expected)
+    np.testing.assert_allclose(run["at"], expected[-1] + (delay or 0) if len(expected) else -1, rtol=1e-9)
+
+
+def test_an_action_that_does_not_persist_is_dropped_after_the_instant_at_which_its_condition_holds():
+    kept = my.trigger(x == 2, do={count: count + 1}, delay=1)
+    dropped = my.trigger(x == 2, do={count: count + 10}, delay=1, persistent=False)
+    assert after(ramp(kept, dropped))["count"] == 1
+
+
+def test_the_sample_at_the_start_has_what_triggers_do_there():
+    begins = my.trigger(x >= 0, do={y: 2}, initial_value=False)
+    run = after(ramp(begins, my.trigger(y > 1, do={y: y + 1}, priority=1)), to=1, samples=3)
+    np.testing.assert_array_equal(run.samples["y"], [[3, 3, 3]])
 
 
 def test_an_initial_value_lets_a_condition_come_to_hold_at_the_start():
@@ -175,7 +201,6 @@ def test_a_study_has_triggers(tmp_path):
 
 
 @pytest.mark.parametrize("make, message", [
-    (lambda: ramp(my.trigger(x == 1)), "`x == 1` in trigger trigger_1 holds or fails for an instant"),
     (lambda: ramp(my.trigger((x > 1) & my.is_finite(x))), r"`is_finite\(x\)` in trigger trigger_1 .*is no comparison"),
     (lambda: ramp(my.trigger(x)), "`x` is a number and not a condition"),
     (lambda: ramp(my.trigger(True)), "the condition of trigger trigger_1.* always holds"),
@@ -199,6 +224,33 @@ def test_wrong_triggers_are_refused(make, message):
         make()
 
 
-def test_tangents_of_a_model_with_triggers_are_refused():
-    with pytest.raises(my.Error, match="triggers"):
-        my.with_tangents(ramp(my.trigger(x > 1, do={y: 1})))
+def test_tangents_of_a_model_with_triggers_are_those_of_events_or_are_refused():
+    def spectrum(**acts):
+        model = my.with_tangents(my.model({x: 1 - x, y: x - y}, **acts))
+        return my.exponents(my.solve(model, start={x: 0, y: 0.1}, time=(0, 20)))
+    turn = {x: 0.1 * y, y: y + x}
+    by_event = spectrum(events=my.event(x - 0.5, direction="rising", do=turn))
+    np.testing.assert_array_equal(spectrum(triggers=my.trigger(x > 0.5, do=turn)), by_event)
+    for more in ({"delay": 1}, {"initial_value": False}):
+        with pytest.raises(my.Error, match="tangents do not take"):
+            my.with_tangents(ramp(my.trigger(x > 1, do={y: 1}, **more)))
+    with pytest.raises(my.Error, match="tangents do not take"):
+        my.with_tangents(ramp(my.trigger((x > 1) & (y > 1), do={y: 1})))
+
+
+def test_triggers_have_the_derivatives_of_differences():
+    """Of a crossing and of a time that is a parameter, after a delay that is one, and of what an action makes hold."""
+    a, b, c, T = (my.parameter(name) for name in "abcT")
+    z = my.state("z")
+    model = my.model({x: a, y: x, z: -b * z}, triggers=[
+        my.trigger(x > c, delay=b * T, do={x: 0.5 * x, y: y + x * T}),
+        my.trigger((my.time > T) & (x > 0), do={z: z + c}),
+        my.trigger(z > 1.4, do={z: z * b})])
+    values = {a: 1.0, b: 0.7, c: 1.0, T: 0.8}
+    options = dict(start={x: 0.3, y: 1.0, z: 1.0}, time=(0, 2.0), rtol=1e-11, atol=1e-12)
+    found = my.solve(model, values, sensitivities=[a, b, c, T], **options)
+    for k in values:
+        above, below = (my.solve(model, {**values, k: values[k] + step}, interpreted=True, **options)
+                        for step in (1e-6, -1e-6))
+        for s in (x, y, z):
+            assert found.sensitivity[s, k] == pytest.approx((above[s] - below[s]) / 2e-6, abs=1e-6)

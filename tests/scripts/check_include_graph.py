@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: MIT
 """Checks that the layers of the library only point down: folders of headers include each other without a cycle, and
 the kernel body, which both compilers see, includes nothing of the host side, no Eigen and no library that only a host
-has. Of the kernel body, the headers in CUDA_CODE alone ask whether nvcc compiles them, and none has members that share
-addresses, which nvcc lays out in two ways."""
+has. Of the kernel body, the headers in GPU_CODE alone have other code for GPUs, and none has members that share
+addresses, which nvcc lays out in two ways. The folder gpu alone names CUDA's runtime, compiler and intrinsics, in all
+sources of the include roots and of --sources."""
 import argparse
 import re
 import sys
@@ -18,11 +19,11 @@ KERNEL_LIBRARY = {
     "type_traits", "utility", "xsimd/xsimd.hpp",
 }
 
-# The headers with code of their own for nvcc. All others are the same for both compilers.
-CUDA_CODE = {
+# The headers with code of their own for GPUs. All others are the same for every compiler.
+GPU_CODE = {
     "myriad/kernel/core/macros.hpp",            # execution spaces, unrolling, barriers
     "myriad/kernel/core/team.hpp",              # what the threads of a team do together
-    "myriad/kernel/core/vec.hpp",               # indices out of range, which nvcc's host compiler refuses
+    "myriad/kernel/core/vec.hpp",               # indices out of range, which the host's compiler refuses
     "myriad/kernel/model/unit_views.hpp",       # numbers of units, likewise
     "myriad/kernel/scalar/math.hpp",            # functions of one number
     "myriad/kernel/scalar/trigonometry.hpp",
@@ -34,7 +35,16 @@ CUDA_CODE = {
 }
 
 NO_UNIQUE_ADDRESS = re.compile(r"^[^/\n]*\[\[no_unique_address\]\]", re.MULTILINE)
-ASKS_FOR_CUDA = re.compile(r"^[ \t]*#(?:[^\n]*\\\n)*[^\n]*\b__(?:CUDA\w*|NVCC)__", re.MULTILINE)
+ASKS_FOR_GPU = re.compile(r"^[ \t]*#(?:[^\n]*\\\n)*[^\n]*\bMYRIAD_(?:FOR_GPU|ON_GPU|GPU_HAS_\w+)\b", re.MULTILINE)
+
+# What CUDA alone has: its runtime, its driver's library, the macros of its compilers, PTX, and intrinsics. What HIP
+# spells as CUDA does is used as it is; in quotes are names that users know.
+NAMES_OF_CUDA = re.compile(
+    r"(?<!\")\b(?:cuda[A-Z]\w*|cuda_runtime\w*|dim3|__(?:CUDA\w*|NVCC)__|nv_diag\w+|warpSize"
+    r"|__\w+_sync|__(?:activemask|syncwarp|popcl?l?|ffsl?l?|clzl?l?|brevl?l?|nanosleep|ldg|fdividef)"
+    r"|__(?:double2\w+|hiloint2double|float_as_\w+|f?(?:mul|add|fma|dmul|dadd|fmaf)_r[nduz]))\b"
+    r"|\basm(?: volatile)?\(\"[a-z]")
+COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 
 
 def read_texts(roots):
@@ -44,20 +54,21 @@ def read_texts(roots):
 
 
 def layer(header):
-    """kernel, host, study, openmp, cuda, python, or public: what users include."""
+    """gpu, kernel, host, study, openmp, cuda, python, or public: what users include."""
     folder = header.split("/")[1:-1]
-    known = ("kernel", "host", "study", "openmp", "cuda", "python")
+    known = ("gpu", "kernel", "host", "study", "openmp", "cuda", "python")
     return folder[0] if folder and folder[0] in known else "public"
 
 
 # The layers that a header of each layer may include.
 BELOW = {
-    "kernel": {"kernel"},
+    "gpu": {"gpu"},
+    "kernel": {"kernel", "gpu"},
     "host": {"host", "kernel"},
     "study": {"study", "public", "host", "kernel"},
     "openmp": {"openmp", "host", "kernel"},
-    "cuda": {"cuda", "host", "kernel"},
-    "python": {"python", "openmp", "cuda", "host", "kernel", "public"},
+    "cuda": {"cuda", "host", "kernel", "gpu"},
+    "python": {"python", "openmp", "cuda", "host", "kernel", "gpu", "public"},
     "public": {"public", "study", "host", "kernel"},
 }
 
@@ -78,15 +89,24 @@ def misplaced_includes(headers):
                        "move the code that needs it to the host side")
 
 
-def misplaced_cuda_code(texts, cuda_code):
-    """The headers outside the backends that ask for nvcc and may not, or are said to and do not."""
+def misplaced_gpu_code(texts, gpu_code):
+    """The headers outside the backends that ask for a GPU's compiler and may not, or are said to and do not."""
     asking = {header for header, text in texts.items()
-              if layer(header) not in ("cuda", "python") and ASKS_FOR_CUDA.search(text)}
-    for header in sorted(asking - cuda_code):
-        yield (f"{header} asks whether nvcc compiles it: the kernel body is one source for both compilers; use a macro "
-               "of myriad/kernel/core/macros.hpp, or name the header in CUDA_CODE")
-    for header in sorted(cuda_code - asking):
-        yield f"CUDA_CODE names {header}, which does not ask whether nvcc compiles it: remove it there"
+              if layer(header) not in ("gpu", "cuda", "python") and ASKS_FOR_GPU.search(text)}
+    for header in sorted(asking - gpu_code):
+        yield (f"{header} asks whether it is compiled for GPUs: the kernel body is one source for all compilers; use a "
+               "macro of myriad/kernel/core/macros.hpp, or name the header in GPU_CODE")
+    for header in sorted(gpu_code - asking):
+        yield f"GPU_CODE names {header}, which does not ask whether it is compiled for GPUs: remove it there"
+
+
+def names_of_cuda(texts):
+    """The places outside the folder gpu that name what CUDA alone has."""
+    for name, text in texts.items():
+        found = layer(name) != "gpu" and NAMES_OF_CUDA.search(COMMENT.sub("", text))
+        if found:
+            yield (f"{name} has {found.group()}, which is CUDA's: take what myriad/gpu/runtime.hpp has for it, or add "
+                   "it there")
 
 
 def ambiguous_layouts(texts):
@@ -135,13 +155,15 @@ def find_cycle(graph):
     return None
 
 
-def complaints(roots, cuda_code=frozenset(CUDA_CODE)):
+def complaints(roots, gpu_code=frozenset(GPU_CODE), sources=()):
     texts = read_texts(roots)
     if not texts:
         return [f"no headers in {', '.join(map(str, roots))}"]
     headers = {header: INCLUDE.findall(text) for header, text in texts.items()}
-    found = [*misplaced_includes(headers), *misplaced_cuda_code(texts, cuda_code),
-             *ambiguous_layouts(texts)]
+    others = {path.as_posix(): path.read_text(encoding="utf-8")
+              for folder in sources for path in sorted(folder.rglob("*.[ch]pp"))}
+    found = [*misplaced_includes(headers), *misplaced_gpu_code(texts, gpu_code), *ambiguous_layouts(texts),
+             *names_of_cuda({**texts, **others})]
     graph = folder_graph(headers)
     cycle = find_cycle(graph)
     if cycle:
@@ -153,7 +175,9 @@ def complaints(roots, cuda_code=frozenset(CUDA_CODE)):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("roots", nargs="+", type=Path, help="folders that are on the include path")
-    found = complaints(parser.parse_args().roots)
+    parser.add_argument("--sources", nargs="*", type=Path, default=[], help="folders of sources beside them")
+    options = parser.parse_args()
+    found = complaints(options.roots, sources=options.sources)
     for complaint in found:
         print(complaint, file=sys.stderr)
     return 1 if found else 0

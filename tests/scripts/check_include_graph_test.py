@@ -13,13 +13,14 @@ SOUND = {
     "myriad/host/solve/solve.hpp": ["vector", "myriad/host/core/error.hpp", "myriad/kernel/core/vec.hpp"],
     "myriad/host/core/error.hpp": ["string"],
     "myriad/kernel/core/vec.hpp": ["cstdint", "myriad/kernel/core/macros.hpp"],
-    "myriad/kernel/core/macros.hpp": [],
+    "myriad/kernel/core/macros.hpp": ["myriad/gpu/runtime.hpp"],
+    "myriad/gpu/runtime.hpp": ["cstdint"],
     "myriad/kernel/model/lane.hpp": ["myriad/kernel/core/vec.hpp"],
     "myriad/openmp/run.hpp": ["omp.h", "myriad/host/core/error.hpp", "myriad/kernel/model/lane.hpp"],
     "myriad/cuda/run.cuh": ["myriad/kernel/model/lane.hpp"],
 }
-CUDA_CODE = {"myriad/kernel/core/macros.hpp"}
-MACROS = "#if defined(__CUDACC__)\n#define MYRIAD_FUNCTION __device__\n#endif\n"
+GPU_CODE = {"myriad/kernel/core/macros.hpp"}
+MACROS = "#if MYRIAD_FOR_GPU\n#define MYRIAD_FUNCTION __device__\n#endif\n"
 
 
 class CheckIncludeGraph(unittest.TestCase):
@@ -33,7 +34,7 @@ class CheckIncludeGraph(unittest.TestCase):
                 form = '#include "{}"\n' if "/" in name else "#include <{}>\n"
                 path.write_text("#pragma once\n" + "".join(form.format(i) for i in includes) + code.get(name, ""),
                                 encoding="utf-8")
-            return complaints([Path(folder)], CUDA_CODE)
+            return complaints([Path(folder)], GPU_CODE)
 
     def assert_found(self, changed, *words, code=None):
         found = "\n".join(self.complaints_of(changed, code))
@@ -83,24 +84,46 @@ class CheckIncludeGraph(unittest.TestCase):
     def test_an_include_of_nothing(self):
         self.assert_found({"myriad/model.hpp": ["myriad/kernel/core/gone.hpp"]}, "does not exist")
 
-    def test_kernel_code_that_asks_for_nvcc(self):
-        for asks in ("#if defined(__CUDA_ARCH__)", "#ifdef __CUDACC__", "#  if !defined(__NVCC__)",
-                     "#if defined(__FMA__) || \\\n    defined(__CUDA_ARCH__)"):
-            self.assert_found({}, "lane.hpp asks whether nvcc",
+    def test_kernel_code_that_asks_for_a_gpus_compiler(self):
+        for asks in ("#if MYRIAD_ON_GPU", "#  if !MYRIAD_FOR_GPU", "#ifdef MYRIAD_GPU_HAS_LARGER_OR_NAN",
+                     "#if defined(__FMA__) || \\\n    MYRIAD_ON_GPU"):
+            self.assert_found({}, "lane.hpp asks whether it is compiled for GPUs",
                               code={"myriad/kernel/model/lane.hpp": asks + "\n#endif\n"})
 
-    def test_host_code_that_asks_for_nvcc(self):
-        self.assert_found({}, "error.hpp asks whether nvcc",
-                          code={"myriad/host/core/error.hpp": "#ifdef __CUDACC__\n#endif\n"})
+    def test_host_code_that_asks_for_a_gpus_compiler(self):
+        self.assert_found({}, "error.hpp asks whether it is compiled for GPUs",
+                          code={"myriad/host/core/error.hpp": "#if MYRIAD_FOR_GPU\n#endif\n"})
 
-    def test_a_backend_may_ask_for_nvcc_and_a_comment_may_name_it(self):
+    def test_a_backend_may_ask_for_a_gpus_compiler_and_a_comment_may_name_it(self):
         self.assertEqual(self.complaints_of({}, {
-            "myriad/cuda/run.cuh": "#if defined(__CUDA_ARCH__)\n#endif\n",
-            "myriad/kernel/model/lane.hpp": "// __CUDA_ARCH__ is not asked for here\n",
+            "myriad/cuda/run.cuh": "#if MYRIAD_ON_GPU\n#endif\n",
+            "myriad/kernel/model/lane.hpp": "// MYRIAD_ON_GPU is not asked for here\n",
         }), [])
 
-    def test_a_header_that_may_ask_for_nvcc_and_does_not(self):
-        self.assert_found({}, "CUDA_CODE names myriad/kernel/core/macros.hpp",
+    def test_what_names_cuda_in_the_kernel_body_in_a_backend_and_on_the_host(self):
+        for code in ("cudaStream_t stream;", "#if defined(__CUDA_ARCH__)\n#endif", "#include <cuda_runtime.h>",
+                     "dim3 blocks;", "__ballot_sync(mask, true);", "__popc(mask);", "__double2hiint(x);",
+                     'asm("rcp.approx.ftz.f64 %0, %1;");'):
+            for header in ("myriad/kernel/model/lane.hpp", "myriad/cuda/run.cuh", "myriad/host/core/error.hpp"):
+                self.assert_found({}, f"{header} has ", "which is CUDA's", code={header: code + "\n"})
+
+    def test_a_source_beside_the_headers_that_names_cuda(self):
+        with tempfile.TemporaryDirectory() as folder:
+            Path(folder, "a.hpp").write_text("", encoding="utf-8")
+            source = Path(folder, "src", "device.cpp")
+            source.parent.mkdir()
+            source.write_text("cudaFree(memory);\n", encoding="utf-8")
+            self.assertIn("device.cpp has cudaFree", complaints([Path(folder)], frozenset(), [source.parent])[0])
+
+    def test_the_folder_gpu_comments_and_what_hip_has_too_may_name_cuda(self):
+        self.assertEqual(self.complaints_of({}, {
+            "myriad/gpu/runtime.hpp": "#if defined(__CUDACC__)\n__popc(mask);\n#endif\n",
+            "myriad/kernel/model/lane.hpp": "// not cudaMalloc\nauto name = \"cudaErrorNoDevice\";\n",
+            "myriad/cuda/run.cuh": "__global__ void f() { __syncthreads(); }\nasm volatile(\"\");\n",
+        }), [])
+
+    def test_a_header_that_may_ask_for_a_gpus_compiler_and_does_not(self):
+        self.assert_found({}, "GPU_CODE names myriad/kernel/core/macros.hpp",
                           code={"myriad/kernel/core/macros.hpp": ""})
 
     def test_kernel_code_with_members_that_share_addresses(self):

@@ -14,7 +14,7 @@ namespace counted {
 struct kernel_count {
     unsigned long long evaluations;
 };
-#if defined(__CUDACC__)
+#if MYRIAD_FOR_GPU
 MYRIAD_TEST_KERNEL_VARIABLE(kernel_count, in_kernels)
 #endif
 
@@ -23,7 +23,7 @@ void add();
 /// One more evaluation. A template, as it calls what is not constexpr.
 template <int = 0>
 MYRIAD_FUNCTION void count() {
-#if defined(__CUDA_ARCH__)
+#if MYRIAD_ON_GPU
     atomicAdd(&in_kernels.evaluations, 1ull);
 #else
     add();

@@ -5,6 +5,8 @@
 
 #include <vector>
 
+#include <myriad/gpu/runtime.hpp>
+
 #include "tests/support/device.hpp"
 
 namespace tests {
@@ -26,7 +28,7 @@ void for_each_kernel_variable(Visit&& visit) {
 
 }  // namespace tests
 
-#if defined(__CUDACC__)
+#if MYRIAD_FOR_GPU
 /// A managed variable of this file, and its entry in the list.
 #define MYRIAD_TEST_KERNEL_VARIABLE(T, name)             \
     static __managed__ T name;                           \

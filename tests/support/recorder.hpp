@@ -30,7 +30,7 @@ struct kernel_log {
     unsigned int size;
     call calls[capacity];
 };
-#if defined(__CUDACC__)
+#if MYRIAD_FOR_GPU
 MYRIAD_TEST_KERNEL_VARIABLE(kernel_log, kernel_calls)
 #endif
 
@@ -55,7 +55,7 @@ MYRIAD_FUNCTION void log(hook which, const auto& lane, int event = -1) {
     c.first = lane.y[0];
     c.last = lane.y[n - 1];
     c.event_count = event < 0 ? 0 : lane.event_count[event];
-#if defined(__CUDA_ARCH__)
+#if MYRIAD_ON_GPU
     const unsigned int number = atomicAdd(&kernel_calls.size, 1u);
     if (number < kernel_log::capacity) kernel_calls.calls[number] = c;
 #else

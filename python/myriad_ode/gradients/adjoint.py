@@ -23,6 +23,7 @@ from ..models import state_jumps
 from ..models.components import Components
 from ..models.event import Event, Stop
 from ..models.methods import default
+from ..models.triggers_as_events import with_events
 from ..solving.gather import ends_of
 from ..sweeps.inputs import numbers, real
 from ..symbolic import symbols as sym
@@ -172,7 +173,10 @@ def _checked(model: AnyModel, by: Sequence[str]) -> Model:
     if model.mass_matrix is not None:
         raise no_adjoint("the model has a mass matrix")
     if model.triggers or model.queue is not None:
-        raise no_adjoint("the model has triggers")
+        by_events = with_events(model)
+        if by_events is None:
+            raise no_adjoint("the model has triggers that wait or have several comparisons")
+        model = by_events
     switches = model.switches
     if any(target not in switches.at_start for target, _ in (*model.initialise, *model.after_step, *model.finalise)):
         raise no_adjoint("the model has hooks or accessories")

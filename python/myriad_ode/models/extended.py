@@ -15,13 +15,10 @@ class Extended(AnyModel):
 
     def __init__(self, model: AnyModel, added: Mapping[str, list[str]], defaults: Mapping[str, Any],
                  what: str) -> None:
-        if model.triggers:
-            raise Error(f"the model has triggers{at(users_line())}, which {what} do not take: give events actions of "
-                        "their own")
         self.model, self.name = model, model.name
         names = {kind: [*known, *added.get(kind, ())] for kind, known in names_of(model).items()}
         self._set_names(names)
-        self.events = model.events
+        self.events, self.triggers, self.edges = model.events, model.triggers, model.edges
         self.generate = model.generate
         every = [name for of_kind in names.values() for name in of_kind]
         twice = next((name for name in every if every.count(name) > 1), None)

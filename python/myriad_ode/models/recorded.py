@@ -286,12 +286,12 @@ class RecordedModel(AnyModel):
                                        for e in (given.delay, given.priority))
             check(one, what)
             one.condition = sides.of(one.condition, one.name)
-            one.do, one.values = self._assignments(given.do, what, line=given.line), []
+            one.do, one.values = self._assignments(given.do, what, line=given.line), list(given.values)
             if one.values_from_trigger_time:
                 one.do = keep_values(one)
             made.append(one)
-        self.events = [*self.events,
-                       *(Event(function, name, "either", None, 0, []) for function, name in sides.functions.items())]
+        made += sides.after_instants(made)
+        self.events = [*self.events, *sides.events()]
         return made
 
     def _accessories(self, accessories: ByComponent | None) -> Assignments:

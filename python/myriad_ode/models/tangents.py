@@ -10,6 +10,8 @@ import numpy as np
 from ..base.errors import Error, at, users_line
 from ..symbolic.numbers import is_whole
 from .extended import Extended
+from .recorded import RecordedModel
+from .triggers_as_events import with_events
 
 if TYPE_CHECKING:
     from .any_model import AnyModel
@@ -38,6 +40,12 @@ class WithTangents(Extended):
         if model.mass_matrix is not None:
             raise Error(f"the model has a mass matrix{at(users_line())}, with which tangents of algebraic states would "
                         "not be independent: solve its algebraic equations in the others")
+        if model.triggers:
+            by_events = with_events(model) if isinstance(model, RecordedModel) else None
+            if by_events is None:
+                raise Error(f"the model has triggers{at(users_line())}, which tangents do not take where they wait or "
+                            "have several comparisons: give events actions of their own")
+            model = by_events
         self.vectors = int(vectors)
         numbers = range(1, self.vectors + 1)
         tangents = [f"{state}_tangent_{i}" for i in numbers for state in model.states]

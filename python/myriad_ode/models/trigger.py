@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import re
+import sys
 from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -11,17 +13,23 @@ import numpy as np
 from ..base.errors import Error, at, users_line
 from ..symbolic import expression as ex, symbols as sym
 from ..symbolic.expression import symbols_of, text
-from ..symbolic.folding import both, either, is_constant, number, opposite, subtract, value_of
+from ..symbolic.folding import both, choose, compare, either, is_constant, number, opposite, subtract, value_of
 from ..symbolic.numbers import is_whole
+from .event import Event
 
 if TYPE_CHECKING:
-    from ..symbolic.expression import Expression
     from ..symbolic.types import Assignments, ByComponent, Written
 
 __all__ = ["trigger", "Trigger"]
 
 _rooms = 1, 4  #: how many actions of a trigger may wait: without a delay, and with one
 _most_waiting = 1000  #: actions of a model: each has a place in every instance, at which kernels look one by one
+
+
+#: What a model with triggers has besides what users name.
+own_names = re.compile(r"trigger|condition|after_trigger|initial_value|persistent|queue|stop|stop_time|due|due_count|"
+                       r"due_(time|action|turn)_\d+|due_value_\d+_\d+|.+_ceases|"
+                       r".+_side_\d+(_is_(zero|over)(_side_1)?)?")
 
 
 class Trigger:
@@ -32,7 +40,7 @@ class Trigger:
         self.condition, self.do, self.delay, self.priority = condition, do, delay, priority
         self.initial_value, self.persistent, self.room, self.name = initial_value, persistent, room, name
         self.values_from_trigger_time = values_from_trigger_time
-        self.values: list[Expression] = []  # what the action gets from the time of the trigger
+        self.values: list[Any] = []  #: what the action gets from the time of the trigger, as its `waiting_value`s
         self.line = users_line()
 
     def __repr__(self) -> str:
@@ -43,7 +51,8 @@ def trigger(condition: Written, *, do: ByComponent | None = None, delay: Written
             priority: Written | None = None, initial_value: bool = True, persistent: bool = True,
             values_from_trigger_time: bool = False, room: int | None = None, name: str | None = None) -> Trigger:
     """A trigger of a model: `do` are the assignments made where `condition` comes to hold, a combination of comparisons
-    by &, | and ~, as in trigger((x > 1) & (t < 5), do={v: 0}). Each comparison is located as an event is.
+    by &, | and ~, as in trigger((x > 1) & (t < 5), do={v: 0}). Each comparison is located as an event is. x == 1 holds
+    for an instant where x crosses 1, or an action puts it there.
 
     With a `delay`, in units of time, the action waits. There is `room` for so many actions of each trigger (4, or 1
     without a delay); if more wait than the triggers of a model together have room for, the instance ends as
@@ -104,7 +113,8 @@ class Edge:
 
 def needs_queue(triggers: Sequence[Trigger]) -> bool:
     """Whether actions have to wait for each other: without a queue they run as soon as they are triggered."""
-    return any(t.delay is not None or t.priority is not None or t.values_from_trigger_time for t in triggers)
+    return any(t.delay is not None or t.priority is not None or t.values or t.values_from_trigger_time
+               for t in triggers)
 
 
 def edges_of(triggers: Sequence[Trigger], queue: Queue | None) -> Iterator[Edge]:
@@ -145,20 +155,33 @@ class Sides:
     def __init__(self, is_still: Callable[[Any], bool]) -> None:
         self._is_still = is_still
         self.functions: dict[Any, str] = {}  #: their names
+        self.instants: dict[Any, Any] = {}  #: of functions whose zeros are such, accessories that say that one is now
 
     def of(self, condition: Any, what: str) -> Any:
         """A condition as one of sides. `what` is the name of its trigger."""
         self._what, self._first = what, len(self.functions)
+        self._made: dict[Any, Any] = {}  # as formulas share their parts
         return self._of(condition)
 
     def _of(self, condition: Any) -> Any:
+        if condition not in self._made:
+            self._made[condition] = self._written(condition)
+        return self._made[condition]
+
+    def _written(self, condition: Any) -> Any:
         if condition.op in ("and", "or"):
             return (both if condition.op == "and" else either)(*map(self._of, condition.args))
         if condition.op == "not":
             return opposite(self._of(condition.args[0]))
         if is_constant(condition):
             return condition
-        if self._is_still(condition):
+        for i, part in enumerate(condition.args):
+            if part.op == "select":  # the comparison of the value that is chosen
+                first, second = (compare(condition.op, *(value if j == i else other
+                                                         for j, other in enumerate(condition.args)))
+                                 for value in part.args[1:])
+                return self._of(choose(part.args[0], first, second))
+        if only_jumps(condition, self._is_still):  # a difference may stay zero for a while
             return self._named(ex.where(condition, 1.0, -1.0))
         if condition.op in ("greater_equal", "less"):  # zero counts as positive
             above = self._named(subtract(*condition.args))
@@ -166,12 +189,58 @@ class Sides:
         if condition.op in ("less_equal", "greater"):
             below = self._named(subtract(*condition.args[::-1]))
             return below if condition.op == "less_equal" else opposite(below)
-        raise Error(f"`{text(condition)}` in trigger {self._what} holds or fails for an instant, or is no comparison: "
-                    "write it with <, <=, > or >=; == and != are for what changes at events alone")
+        if condition.op in ("equal", "not_equal"):
+            holds = self._is_zero(*condition.args)
+            return holds if condition.op == "equal" else opposite(holds)
+        raise Error(f"`{text(condition)}` in trigger {self._what} is no comparison: write it with <, <=, >, >=, == or "
+                    "!=")
+
+    def _is_zero(self, a: Any, b: Any) -> Any:
+        """Whether two sides are equal: at the instant of a crossing, or where an action has made them so."""
+        function = subtract(a, b)
+        there = both(self._named(function), self._named(subtract(b, a)))
+        if function not in self.instants:
+            self.instants[function] = sym.integer_accessory(f"{self.functions[function]}_is_zero")
+        return either(there, self._named(ex.where(self.instants[function] == 1, 1.0, -1.0)))
 
     def _named(self, function: Any) -> Any:
         number = len(self.functions) - self._first + 1
         return side(self.functions.setdefault(function, f"{self._what}_side_{number}"))
+
+    def events(self) -> Iterator[Event]:
+        """The events of the functions. Those of instants note that they have come."""
+        for function, name in self.functions.items():
+            instant = self.instants.get(function)
+            yield Event(function, name, "either", None, 0, [] if instant is None else [(instant, ex.constant(1))])
+
+    def after_instants(self, triggers: Sequence[Trigger]) -> Iterator[Trigger]:
+        """Triggers behind all others, at which instants are over."""
+        if not self.instants:
+            return
+        for one in triggers:
+            if one.priority is None:
+                one.priority = ex.constant(-sys.float_info.max)
+        for function, instant in self.instants.items():
+            name = f"{self.functions[function]}_is_over"
+            over = Trigger(self.of(instant == 1, name), [(instant, ex.constant(0))], None, None, True, True, False, 1,
+                           name)
+            yield over
+
+
+def only_jumps(condition: Any, is_still: Callable[[Any], bool]) -> bool:
+    """Whether a condition changes at jumps alone, as floor(time) == 3 and what only hooks change."""
+    waiting, seen = [condition], set()
+    while waiting:
+        part = waiting.pop()
+        if part in seen:
+            continue
+        seen.add(part)
+        if part is not condition and part.type == ex.condition or part.op in ("floor", "rint") or is_still(part):
+            continue
+        if part.op == "symbol":
+            return False
+        waiting += part.args
+    return True
 
 
 def check(one: Trigger, what: str) -> None:

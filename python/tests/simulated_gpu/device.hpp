@@ -9,7 +9,9 @@
 #include <tuple>
 #include <utility>
 
-#define __CUDACC_RTC__ 1
+#include "myriad/gpu/runtime.hpp"
+
+#define MYRIAD_COMPILED_AT_RUN_TIME
 #define MYRIAD_SIMULATED_TEAM 1
 #define __global__
 #define __device__
@@ -75,14 +77,18 @@ inline unsigned long long atomicMax(unsigned long long* to, unsigned long long v
 inline unsigned long long atomicMin(unsigned long long* to, unsigned long long value) {
     return std::exchange(*to, value < *to ? value : *to);
 }
-inline unsigned long long __shfl_down_sync(unsigned, unsigned long long value, int distance) {
+
+namespace myriad::gpu {
+using lane_mask = std::uint32_t;
+inline unsigned long long shuffle_down(lane_mask, unsigned long long value, int distance) {
     const unsigned me = simulated::now.thread.x, other = me + static_cast<unsigned>(distance);
     simulated::now.exchanged[me] = value;
     simulated::wait_for_block();
-    const auto result = other / 32 == me / 32 ? simulated::now.exchanged[other] : value;
+    const auto result = other / warp_size == me / warp_size ? simulated::now.exchanged[other] : value;
     simulated::wait_for_block();
     return result;
 }
+}  // namespace myriad::gpu
 
 namespace myriad::simulated_team {
 inline int number_of_thread() { return static_cast<int>(simulated::now.thread.x); }

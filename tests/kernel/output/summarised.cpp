@@ -16,4 +16,6 @@ MYRIAD_INSTANTIATE(summarised::timed, myriad::tsitouras_5, myriad::runge_kutta_4
 MYRIAD_INSTANTIATE(summarised::ball, myriad::runge_kutta_4, myriad::cash_karp, myriad::tsitouras_5)
 MYRIAD_INSTANTIATE(summarised::remembering, myriad::cash_karp, myriad::tsitouras_5)
 MYRIAD_INSTANTIATE(summarised::remembering_by_hook, myriad::cash_karp, myriad::tsitouras_5)
+MYRIAD_INSTANTIATE(summarised::halved, myriad::cash_karp, myriad::runge_kutta_4)
+MYRIAD_INSTANTIATE(summarised::halved_and_summed, myriad::cash_karp, myriad::runge_kutta_4)
 MYRIAD_INSTANTIATE(summarised::swing_with_tangents, myriad::tsitouras_5)

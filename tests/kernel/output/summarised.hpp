@@ -143,6 +143,31 @@ struct remembering_by_hook {
     }
 };
 
+/// A decay, x' = -x, whose hook halves x after each step that leaves it above one.
+struct halved {
+    static constexpr bool accessories_are_outputs = true;
+    enum state { x, n_state };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& y, const auto&) {
+        return myriad::vec<R, n_state>{-y[x]};
+    }
+    MYRIAD_FUNCTION static void after_step(auto& lane) {
+        if (lane.y[x] > 1) lane.y[x] /= 2;
+    }
+};
+/// The same with its integral.
+struct halved_and_summed : halved {
+    enum accessory { area, n_accessory };
+    enum observed { position, n_observed };
+    static constexpr myriad::summary summaries[] = {{position, to::integral, area}};
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_observed> observe(auto, const myriad::vec<R, n_state>& y, const auto&) {
+        return myriad::vec<R, n_observed>{y[x]};
+    }
+};
+
 using swing_with_tangents = myriad::with_tangents<swing, 2>;
 
 }  // namespace summarised

@@ -334,6 +334,27 @@ TEST_CASE("a right-hand side may read what a summary writes, as what a hook writ
     check.template operator()<tsitouras_5>();
 }
 
+TEST_CASE("a summary leaves the steps after a hook's change of the state as they are without it", "[summary]") {
+    const auto check = []<class Method> {
+        ensemble<halved> alone(5);
+        ensemble<halved_and_summed> summed(5);
+        const auto solve_one = [](auto& of) {
+            of.state(0) = 8.0;
+            of.time_domain(0, 1);
+            options o = compare::with_tolerance(1e-6);
+            o.step = 0.1;
+            solve<Method>(tests::test_device(), of, o);
+        };
+        solve_one(alone);
+        solve_one(summed);
+        CHECK(summed.state(0)[3] == alone.state(0)[3]);
+        CHECK(summed.accepted_steps()[3] == alone.accepted_steps()[3]);
+        CHECK(summed.accessory(halved_and_summed::area)[3] > 0);
+    };
+    check.template operator()<cash_karp>();
+    check.template operator()<runge_kutta_4>();
+}
+
 TEST_CASE("a model with tangents keeps the summaries of its own", "[summary]") {
     auto e = swings<swing_with_tangents>();
     myriad::initial_tangents(e);

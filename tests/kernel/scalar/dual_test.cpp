@@ -157,6 +157,12 @@ TEST_CASE("a model's expression has the derivative of its difference quotient"){
     CHECK_DERIVATIVE(x - x * x * x - x / 4 + cos(x * 2) * exp(-x * x) + pow(1 / (x + 3), 2.5) * log(x + 4), 0.3, -1.2,
                      2.0)}
 
+TEST_CASE("infinity, NaN and the spacing of numbers are those of their real type") {
+    CHECK(myriad::infinity_of<dual<double>> == std::numeric_limits<double>::infinity());
+    CHECK(myriad::epsilon_of<dual<double>> == std::numeric_limits<double>::epsilon());
+    CHECK(myriad::nan_of<dual<double>> != myriad::nan_of<dual<double>>);
+}
+
 TEST_CASE("min, max and copysign take the derivative of what they return") {
     const dual<double> a(1, 10);
     const dual<double> b(2, 20);

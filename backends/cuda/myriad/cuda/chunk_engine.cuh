@@ -39,7 +39,7 @@ public:
             now_current_.emplace(device_);  // until the other members are destroyed
         } catch (const error&) {            // CUDA may be gone at exit
         }
-        cudaStreamSynchronize(stream_.get());
+        gpu::synchronise(stream_.get());
     }
 
     void reserve(const arguments& host, std::int64_t count) override {
@@ -98,7 +98,7 @@ public:
                 if (elsewhere(source + c * host.size)) add_until(c);
             add_until(components);
         });
-        copy_directly(take_pinned(list), cudaMemcpyHostToDevice, stream_.get());
+        copy_directly(take_pinned(list), gpu::direction::to_device, stream_.get());
         if (little_transfer::takes(list)) {
             little_.upload(list, stream_.get());
         } else {
@@ -124,9 +124,9 @@ public:
         });
         prepare_sample_times(now.sample);
         stop_line_.clear(stream_.get());
-        MYRIAD_CUDA(cudaEventRecord(begun_.get(), stream_.get()));
+        MYRIAD_GPU_CALL(gpu::record(begun_.get(), stream_.get()));
         scheduler_.launch(launcher_, now, stream_.get());
-        MYRIAD_CUDA(cudaEventRecord(done_.get(), stream_.get()));
+        MYRIAD_GPU_CALL(gpu::record(done_.get(), stream_.get()));
     }
 
     void download(const arguments& host, bool (*wanted)(void*, array_kind, std::int64_t), void* context) override {
@@ -156,7 +156,7 @@ public:
         row_list& lower = after ? of_arrays : list;
         const row_list& upper = after ? list : of_arrays;
         lower.insert(lower.end(), upper.begin(), upper.end());
-        copy_directly(take_pinned(lower), cudaMemcpyDeviceToHost, stream_.get());
+        copy_directly(take_pinned(lower), gpu::direction::to_host, stream_.get());
         if (little_transfer::takes(lower)) {
             little_.begin_download(lower, stream_.get());
         } else {
@@ -189,7 +189,7 @@ public:
         finish_download();
         const row_list list{{static_cast<std::byte*>(to), const_cast<std::byte*>(from), bytes, 1, bytes}};
         if (is_pinned(to)) {
-            copy_directly(list, cudaMemcpyDeviceToHost, stream_.get());
+            copy_directly(list, gpu::direction::to_host, stream_.get());
         } else if (little_transfer::takes(list)) {
             little_.begin_download(list, stream_.get());
         } else {
@@ -199,17 +199,17 @@ public:
         wait();
     }
     /// For further work on the device.
-    cudaStream_t in_stream() const { return stream_.get(); }
+    gpu::stream_handle in_stream() const { return stream_.get(); }
 
     void wait() override {
         const current_device here(device_);
         finish_download();
-        check(cudaStreamSynchronize(stream_.get()), "the integration on the GPU");
+        check(gpu::synchronise(stream_.get()), "the integration on the GPU");
     }
     bool idle() override {
         const current_device here(device_);
-        const cudaError_t status = cudaStreamQuery(stream_.get());
-        if (status == cudaErrorNotReady) return false;
+        const gpu::result status = gpu::query(stream_.get());
+        if (status == gpu::result::not_ready) return false;
         check(status, "the integration on the GPU");
         return true;
     }
@@ -219,40 +219,40 @@ public:
     }
     void* mark() override {
         const current_device here(device_);
-        MYRIAD_CUDA(cudaEventRecord(mark_.get(), stream_.get()));
+        MYRIAD_GPU_CALL(gpu::record(mark_.get(), stream_.get()));
         return mark_.get();
     }
     void wait_for(work& other) override {
         void* const reached = other.mark();
         const current_device here(device_);
-        MYRIAD_CUDA(cudaStreamWaitEvent(stream_.get(), static_cast<cudaEvent_t>(reached), 0));
+        MYRIAD_GPU_CALL(gpu::wait_for(stream_.get(), static_cast<gpu::event_handle>(reached)));
     }
     double kernel_seconds() override {
         const current_device here(device_);
-        check(cudaEventSynchronize(done_.get()), "the integration on the GPU");
+        check(gpu::synchronise(done_.get()), "the integration on the GPU");
         float milliseconds = 0;
-        MYRIAD_CUDA(cudaEventElapsedTime(&milliseconds, begun_.get(), done_.get()));
+        MYRIAD_GPU_CALL(gpu::find_milliseconds(&milliseconds, begun_.get(), done_.get()));
         return 1e-3 * static_cast<double>(milliseconds);
     }
     any_engine::interval kernel_interval(void* clock) override {
         const current_device here(device_);
-        check(cudaEventSynchronize(done_.get()), "the integration on the GPU");
+        check(gpu::synchronise(done_.get()), "the integration on the GPU");
         const auto seconds = [&](const event& e) {
             float milliseconds = 0;
-            MYRIAD_CUDA(cudaEventElapsedTime(&milliseconds, static_cast<cudaEvent_t>(clock), e.get()));
+            MYRIAD_GPU_CALL(gpu::find_milliseconds(&milliseconds, static_cast<gpu::event_handle>(clock), e.get()));
             return 1e-3 * static_cast<double>(milliseconds);
         };
         return {seconds(begun_), seconds(done_)};
     }
     void* start_clock() override {
         const current_device here(device_);
-        MYRIAD_CUDA(cudaEventRecord(clock_.get(), stream_.get()));
+        MYRIAD_GPU_CALL(gpu::record(clock_.get(), stream_.get()));
         return clock_.get();
     }
     kernel_facts facts() const override { return launcher_.facts(); }
     std::int64_t full_load() const override {
         int multiprocessors = 0;
-        MYRIAD_CUDA(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device_));
+        MYRIAD_GPU_CALL(gpu::find_attribute(&multiprocessors, gpu::device_attribute::multiprocessors, device_));
         const kernel_facts all = facts();
         return std::int64_t{multiprocessors} * all.blocks_per_multiprocessor * all.block_size /
                all.threads_per_instance;
@@ -263,7 +263,7 @@ public:
                           always_fine = std::size_t{32} << 20;
         if (held <= always_fine) return;
         std::size_t free = 0, total = 0;
-        MYRIAD_CUDA(cudaMemGetInfo(&free, &total));
+        MYRIAD_GPU_CALL(gpu::find_memory(&free, &total));
         if (held <= total / 1024) return;
         count_ = 0;
         memory_.release();
@@ -274,7 +274,7 @@ public:
     std::int64_t affordable(std::int64_t bytes) const override {
         const current_device here(device_);
         std::size_t free = 0, total = 0;
-        MYRIAD_CUDA(cudaMemGetInfo(&free, &total));
+        MYRIAD_GPU_CALL(gpu::find_memory(&free, &total));
         const double taken = static_cast<double>(bytes) + static_cast<double>(scheduler_.bytes_per_instance());
         return static_cast<std::int64_t>(0.9 * static_cast<double>(free) / taken);
     }
@@ -338,13 +338,13 @@ protected:
         });
         // Bookkeeping arrays are contiguous.
         if (zeros != nullptr)
-            MYRIAD_CUDA(cudaMemsetAsync(zeros, 0, static_cast<std::size_t>(end_of_zeros - zeros), stream_.get()));
+            MYRIAD_GPU_CALL(gpu::fill(zeros, 0, static_cast<std::size_t>(end_of_zeros - zeros), stream_.get()));
     }
     /// Sets reals to NaN, which means that nothing was written, and integers to 0.
     template <class T>
     void clear(T* device, std::int64_t components) {
         const int byte = std::is_floating_point_v<T> ? 0xff : 0;
-        MYRIAD_CUDA(cudaMemsetAsync(device, byte, bytes_of(device, components * count_), stream_.get()));
+        MYRIAD_GPU_CALL(gpu::fill(device, byte, bytes_of(device, components * count_), stream_.get()));
     }
 
     bool has_samples(const arguments& host) const {
@@ -367,7 +367,7 @@ protected:
         const std::size_t bytes = static_cast<std::size_t>(sample.count) * sizeof(R);
         if (bytes > sample_times_.bytes()) wait();
         sample_times_.reserve(bytes);
-        MYRIAD_CUDA(cudaMemcpyAsync(sample_times_.data(), sample.times, bytes, cudaMemcpyHostToDevice, stream_.get()));
+        MYRIAD_GPU_CALL(gpu::copy(sample_times_.data(), sample.times, bytes, gpu::direction::to_device, stream_.get()));
         sample.times = static_cast<const R*>(sample_times_.data());
     }
 
@@ -379,9 +379,9 @@ protected:
         auto* const reals = static_cast<R*>(shared_.data());
         auto* const integers =
             reinterpret_cast<std::int32_t*>(static_cast<std::byte*>(shared_.data()) + padded(real, 1));
-        if (real > 0) MYRIAD_CUDA(cudaMemcpyAsync(reals, shared.real, real, cudaMemcpyHostToDevice, stream_.get()));
+        if (real > 0) MYRIAD_GPU_CALL(gpu::copy(reals, shared.real, real, gpu::direction::to_device, stream_.get()));
         if (integer > 0)
-            MYRIAD_CUDA(cudaMemcpyAsync(integers, shared.integer, integer, cudaMemcpyHostToDevice, stream_.get()));
+            MYRIAD_GPU_CALL(gpu::copy(integers, shared.integer, integer, gpu::direction::to_device, stream_.get()));
         shared_on_device_ = {reals, integers};
     }
 

@@ -30,18 +30,18 @@ public:
         order_.release();
     }
     /// Enqueues the clearing of the costs.
-    void clear(std::int64_t count, cudaStream_t where) {
-        MYRIAD_CUDA(cudaMemsetAsync(cost_.data(), 0, static_cast<std::size_t>(count) * sizeof(std::uint32_t), where));
+    void clear(std::int64_t count, gpu::stream_handle where) {
+        MYRIAD_GPU_CALL(gpu::fill(cost_.data(), 0, static_cast<std::size_t>(count) * sizeof(std::uint32_t), where));
     }
     std::uint32_t* cost() const { return static_cast<std::uint32_t*>(cost_.data()); }
     const std::uint32_t* order() const { return static_cast<const std::uint32_t*>(order_.data()); }
 
     /// Enqueues the sort; the instances' costs must be known.
-    void sort(const cost_kernels& with, std::int64_t count, cudaStream_t where) {
+    void sort(const cost_kernels& with, std::int64_t count, gpu::stream_handle where) {
         const auto size = static_cast<std::uint32_t>(count);
         const unsigned blocks = (size + costs_per_block - 1) / costs_per_block;
         auto* const buckets = static_cast<unsigned*>(buckets_.data());
-        MYRIAD_CUDA(cudaMemsetAsync(buckets, 0, cost_buckets * sizeof(unsigned), where));
+        MYRIAD_GPU_CALL(gpu::fill(buckets, 0, cost_buckets * sizeof(unsigned), where));
         const std::uint32_t* const costs = cost();
         auto* order = static_cast<std::uint32_t*>(order_.data());
         run(with.count_all_costs, blocks, where, costs, size, buckets);
@@ -51,9 +51,9 @@ public:
 
 private:
     template <class... Arguments>
-    static void run(const void* kernel, unsigned blocks, cudaStream_t where, Arguments... arguments) {
+    static void run(const void* kernel, unsigned blocks, gpu::stream_handle where, Arguments... arguments) {
         void* all[] = {const_cast<void*>(static_cast<const void*>(&arguments))...};
-        check(cudaLaunchKernel(kernel, dim3(blocks), dim3(cost_block), all, 0, where), "the launch of a sort by cost");
+        check(gpu::launch(kernel, {blocks}, cost_block, all, 0, where), "the launch of a sort by cost");
     }
 
     device_memory cost_, order_, buckets_;

@@ -8,7 +8,7 @@
 #include "myriad/kernel/core/macros.hpp"
 
 // One copy for each file of a program, or, compiled at run time, one by its name.
-#if defined(__CUDACC_RTC__)
+#if defined(MYRIAD_COMPILED_AT_RUN_TIME)
 #define MYRIAD_GLOBAL extern "C" __global__
 #else
 #define MYRIAD_GLOBAL static __global__

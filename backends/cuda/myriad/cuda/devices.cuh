@@ -17,10 +17,10 @@ namespace myriad::cuda {
 /// Number of GPUs; if there are none, `why_none` gives the reason.
 inline int count_devices(std::string& why_none) {
     int count = 0;
-    const cudaError_t status = cudaGetDeviceCount(&count);
-    if (status != cudaSuccess) {
-        cudaGetLastError();
-        why_none = message(cudaGetErrorString(status), " (", cudaGetErrorName(status), ")");
+    const gpu::result status = gpu::find_device_count(&count);
+    if (status != gpu::result::success) {
+        gpu::forget_failure();
+        why_none = message(gpu::text_of(status), " (", gpu::name_of(status), ")");
         return 0;
     }
     if (count == 0) why_none = "the driver finds no GPU";
@@ -32,25 +32,25 @@ __attribute__((weak)) std::vector<device_facts> list_devices(std::string& why_no
     const int count = count_devices(why_none);
     std::vector<device_facts> found;
     for (int i = 0; i < count; ++i) {
-        cudaDeviceProp properties{};
-        MYRIAD_CUDA(cudaGetDeviceProperties(&properties, i));
-        found.push_back({properties.name, static_cast<std::int64_t>(properties.totalGlobalMem),
-                         properties.multiProcessorCount, 10 * properties.major + properties.minor});
+        gpu::device_properties properties{};
+        MYRIAD_GPU_CALL(gpu::find_properties(&properties, i));
+        found.push_back({properties.name, static_cast<std::int64_t>(properties.memory_bytes),
+                         properties.multiprocessors, 10 * properties.major + properties.minor});
     }
     return found;
 }
 
 __attribute__((weak)) void pin_memory(int device, void* memory, std::size_t bytes) {
     const current_device here(device);
-    const cudaError_t status = cudaHostRegister(memory, bytes, cudaHostRegisterPortable);
-    if (status != cudaSuccess) cudaGetLastError();
-    require(status == cudaSuccess, static_cast<double>(bytes) / 1e9,
-            " GB of host memory cannot be pinned: ", cudaGetErrorString(status), " (", cudaGetErrorName(status),
+    const gpu::result status = gpu::pin(memory, bytes);
+    if (status != gpu::result::success) gpu::forget_failure();
+    require(status == gpu::result::success, static_cast<double>(bytes) / 1e9,
+            " GB of host memory cannot be pinned: ", gpu::text_of(status), " (", gpu::name_of(status),
             "); there may be too little of it, or someone else has pinned it: go on without pinning");
 }
 __attribute__((weak)) void unpin_memory(void* memory) {
-    cudaHostUnregister(memory);
-    cudaGetLastError();  // CUDA may be gone at exit
+    gpu::unpin(memory);
+    gpu::forget_failure();  // CUDA may be gone at exit
 }
 
 /// Throws `error` unless the device of the options exists.

@@ -81,8 +81,9 @@ __device__ __forceinline__ std::int64_t first_instance() {
     } else if constexpr (thread_team<threads>::is_block) {
         return block;
     } else {
-        constexpr int teams = 32 / threads;
-        return (static_cast<std::int64_t>(threadIdx.x / 32) * gridDim.x + block) * teams + threadIdx.x % 32 / threads;
+        constexpr int lanes = gpu::warp_size, teams = lanes / threads;
+        return (static_cast<std::int64_t>(threadIdx.x / lanes) * gridDim.x + block) * teams +
+               threadIdx.x % lanes / threads;
     }
 }
 

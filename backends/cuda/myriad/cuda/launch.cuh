@@ -36,7 +36,7 @@ public:
     kernel_launcher(int device, const engine_options& wanted, model_kernels kernels)
         : kernels_(std::move(kernels)), offsets_(kernels_.traits.model) {
         int limit = 0;
-        MYRIAD_CUDA(cudaDeviceGetAttribute(&limit, cudaDevAttrMaxSharedMemoryPerBlockOptin, device));
+        MYRIAD_GPU_CALL(gpu::find_attribute(&limit, gpu::device_attribute::shared_bytes_of_block, device));
         facts_.threads_per_instance = traits().team;
         const int bytes = traits().shared_bytes;
         const bool fits = bytes + traits().block_bytes + smallest_block() * traits().step_bytes <= limit;
@@ -53,8 +53,7 @@ public:
                 " bytes: up to 1024 they are kept in the constant bank, more in "
                 "shared memory or the cache; set it to automatic");
         parameters_.resize(static_cast<std::size_t>(offsets_.bytes(facts_.shared_placement)) / sizeof(double));
-        if (uses_shared_memory())
-            MYRIAD_CUDA(cudaFuncSetAttribute(function(), cudaFuncAttributeMaxDynamicSharedMemorySize, limit));
+        if (uses_shared_memory()) MYRIAD_GPU_CALL(gpu::allow_shared_bytes(function(), limit));
         choose_block(device, static_cast<int>(wanted.block_size));
     }
 
@@ -63,7 +62,7 @@ public:
     const cost_kernels& sort() const { return kernels_.sort; }
     study_kernels study() const { return kernels_.study(); }
     /// Number of instances that gives every warp scheduler of the GPU one warp.
-    std::int64_t least_instances() const { return std::int64_t{128} * multiprocessors_ / traits().team; }
+    std::int64_t least_instances() const { return std::int64_t{4 * warp} * multiprocessors_ / traits().team; }
     /// Whether so many instances have to wait for threads with steps in shared memory, which few threads fill, and
     /// whose steps take long.
     bool makes_wait(std::int64_t size) const {
@@ -83,7 +82,7 @@ public:
 
     /// Launches the kernel on device pointers. With a queue, which must be zero, launches no more threads than run at
     /// once.
-    void launch(const any_arguments<R>& arguments, unsigned long long* queue, cudaStream_t where) {
+    void launch(const any_arguments<R>& arguments, unsigned long long* queue, gpu::stream_handle where) {
         const int block = facts_.block_size = block_for(arguments.size);
         auto blocks = static_cast<unsigned>((arguments.size * traits().team + block - 1) / block);
         if (queue != nullptr) blocks = std::min(blocks, blocks_at_once(block));
@@ -94,18 +93,18 @@ public:
         put(offsets_.queue, &queue, 1);
         put(offsets_.stop(), &stop_, 1);
         void* all[] = {parameters_.data()};
-        // Not <<<>>>, which returns the status of the thread's last failure, whatever its cause.
-        check(cudaLaunchKernel(function(), dim3(blocks), dim3(static_cast<unsigned>(block)), all,
-                               static_cast<std::size_t>(facts_.shared_bytes), where),
+        check(gpu::launch(function(), {blocks}, static_cast<unsigned>(block), all,
+                          static_cast<std::size_t>(facts_.shared_bytes), where),
               "the launch of the integration kernel");
     }
 
 private:
+    static constexpr int warp = gpu::warp_size;
     static constexpr std::int64_t cache_bytes = 128 * 1024;  // of a V100; later GPUs have more
     /// Of kernels with steps in shared memory: parts of a warp, unless teams share it out.
-    int smallest_block() const { return traits().team > 1 ? std::max(traits().team, 32) : 8; }
+    int smallest_block() const { return traits().team > 1 ? std::max(traits().team, warp) : 8; }
     /// Whether each block is one team.
-    bool team_is_block() const { return traits().team > 32; }
+    bool team_is_block() const { return traits().team > warp; }
 
     const void* function() const {
         return facts_.shared_placement == place::shared_memory ? kernels_.integrate_staged : kernels_.integrate;
@@ -126,36 +125,38 @@ private:
     }
 
     void choose_block(int device, int wanted) {
-        cudaFuncAttributes attributes{};
-        MYRIAD_CUDA(cudaFuncGetAttributes(&attributes, function()));
-        facts_.registers = attributes.numRegs;
-        facts_.local_bytes = static_cast<std::int64_t>(attributes.localSizeBytes);
-        const int most = attributes.maxThreadsPerBlock;
+        gpu::kernel_attributes attributes{};
+        MYRIAD_GPU_CALL(gpu::find_attributes(&attributes, function()));
+        facts_.registers = attributes.registers;
+        facts_.local_bytes = static_cast<std::int64_t>(attributes.local_bytes);
+        const int most = attributes.most_threads;
         require(wanted == 0 || !team_is_block() || wanted == traits().team, "block_size is ", wanted,
                 ", but a block of this kernel is a team of ", traits().team, " threads", host::cure,
                 "leave block_size out");
         require(wanted <= most, "block_size is ", wanted, ", but a block of this kernel has at most ", most,
-                " threads (", attributes.numRegs, " registers each)", host::cure, "give a smaller block_size",
+                " threads (", attributes.registers, " registers each)", host::cure, "give a smaller block_size",
                 wanted <= 1024 && traits().max_block_size < wanted
                     ? ", or let the model declare a larger `static constexpr int max_block_size`"
                     : "");
         // The smallest block size among those that keep most threads resident, as the fewer threads end together, the
         // sooner others start. Where shared memory has no room for a warp, blocks are parts of one.
-        int first = std::min(32, most / 32 * 32);
+        int first = std::min(warp, most / warp * warp);
         if (team_is_block()) first = traits().team;
         if (wanted > 0) first = wanted;
         consider_blocks(first, wanted > 0 ? wanted : most);
-        if (traits().team > 1 && wanted == 0) consider_blocks(most / 32 * 32, most);
+        if (traits().team > 1 && wanted == 0) consider_blocks(most / warp * warp, most);
         while (facts_.block_size == 0 && wanted == 0 && keeps_steps_in_shared_memory() && first > smallest_block()) {
             first /= 2;
             consider_blocks(first, first);
         }
-        require(facts_.block_size > 0, "not one block of this kernel fits into a multiprocessor: ", attributes.numRegs,
+        require(facts_.block_size > 0,
+                "not one block of this kernel fits into a multiprocessor: ", attributes.registers,
                 " registers per thread and ", shared_bytes_of(wanted > 0 ? wanted : first),
                 " bytes of shared memory per block", wanted > 0 ? ": give a smaller block_size" : "");
         facts_.shared_bytes = shared_bytes_of(chosen_block_);
-        MYRIAD_CUDA(cudaDeviceGetAttribute(&multiprocessors_, cudaDevAttrMultiProcessorCount, device));
-        MYRIAD_CUDA(cudaDeviceGetAttribute(&shared_memory_, cudaDevAttrMaxSharedMemoryPerMultiprocessor, device));
+        MYRIAD_GPU_CALL(gpu::find_attribute(&multiprocessors_, gpu::device_attribute::multiprocessors, device));
+        MYRIAD_GPU_CALL(
+            gpu::find_attribute(&shared_memory_, gpu::device_attribute::shared_bytes_of_multiprocessor, device));
         chosen_by_user_ = wanted > 0;
     }
 
@@ -164,8 +165,8 @@ private:
         int best_threads = facts_.blocks_per_multiprocessor * chosen_block_;
         for (int block = first; block <= last; block *= 2) {
             int blocks = 0;
-            MYRIAD_CUDA(cudaOccupancyMaxActiveBlocksPerMultiprocessor(
-                &blocks, function(), block, static_cast<std::size_t>(shared_bytes_of(block))));
+            MYRIAD_GPU_CALL(gpu::find_resident_blocks(&blocks, function(), block,
+                                                      static_cast<std::size_t>(shared_bytes_of(block))));
             if (blocks * block <= best_threads) continue;
             best_threads = blocks * block;
             chosen_block_ = facts_.block_size = block;
@@ -174,8 +175,8 @@ private:
     }
     /// A multiprocessor's share of the threads, a multiple of a warp's.
     int even_block(std::int64_t size) const {
-        const std::int64_t warps = (size * traits().team + 31) / 32;
-        return static_cast<int>((warps + multiprocessors_ - 1) / multiprocessors_) * 32;
+        const std::int64_t warps = (size * traits().team + warp - 1) / warp;
+        return static_cast<int>((warps + multiprocessors_ - 1) / multiprocessors_) * warp;
     }
 
     int resident_blocks(int block) const {
@@ -194,7 +195,7 @@ private:
         const std::int64_t used = resident * (shared_bytes_of(block) + reserved);
         const auto percent =
             static_cast<int>(std::min<std::int64_t>((100 * used + shared_memory_ - 1) / shared_memory_, 100));
-        MYRIAD_CUDA(cudaFuncSetAttribute(function(), cudaFuncAttributePreferredSharedMemoryCarveout, percent));
+        MYRIAD_GPU_CALL(gpu::prefer_shared_memory(function(), percent));
     }
 
     /// Ensembles too small to fill the GPU are spread over all its multiprocessors, down to one warp per block. With
@@ -207,22 +208,22 @@ private:
         // Where one block takes the shared memory of a multiprocessor, for what all its teams read, all run at once.
         if (traits().team > 1 && facts_.blocks_per_multiprocessor == 1 && even_block(size) <= block)
             return even_block(size);
-        while (block > 32 && size * traits().team <= static_cast<std::int64_t>(multiprocessors_) * block / 2)
+        while (block > warp && size * traits().team <= static_cast<std::int64_t>(multiprocessors_) * block / 2)
             block /= 2;
         if (traits().costs_differ && traits().team == 1) {
-            const std::int64_t warps = keeps_steps_in_shared_memory() ? multiprocessors_ : least_instances() / 32;
-            while (block > 1 && block <= 32 && size <= warps * (block / 2) && fits_the_cache(size, block / 2))
+            const std::int64_t warps = keeps_steps_in_shared_memory() ? multiprocessors_ : least_instances() / warp;
+            while (block > 1 && block <= warp && size <= warps * (block / 2) && fits_the_cache(size, block / 2))
                 block /= 2;
         }
         return block;
     }
     /// Whether the local memory of blocks of at most one warp stays in the cache of a multiprocessor. A warp has that
-    /// of 32 threads, word by word side by side, however many of them run: docs/numerics.md has what that cost.
+    /// of all its threads, word by word side by side, however many of them run: docs/numerics.md has what that cost.
     bool fits_the_cache(std::int64_t size, std::int64_t block) const {
         if (keeps_steps_in_shared_memory()) return true;  // as closely as one warp does
         const std::int64_t blocks = (size + block - 1) / block;
         const std::int64_t resident = (blocks + multiprocessors_ - 1) / multiprocessors_;
-        return resident * 32 * facts_.local_bytes <= cache_bytes;
+        return resident * warp * facts_.local_bytes <= cache_bytes;
     }
 
     model_kernels kernels_;

@@ -15,10 +15,10 @@ namespace myriad::cuda {
 class current_device {
 public:
     explicit current_device(int number) {
-        MYRIAD_CUDA(cudaGetDevice(&before_));
-        if (number != before_) MYRIAD_CUDA(cudaSetDevice(number));
+        MYRIAD_GPU_CALL(gpu::find_device(&before_));
+        if (number != before_) MYRIAD_GPU_CALL(gpu::set_device(number));
     }
-    ~current_device() { cudaSetDevice(before_); }
+    ~current_device() { gpu::set_device(before_); }
     current_device(const current_device&) = delete;
     current_device& operator=(const current_device&) = delete;
 
@@ -32,18 +32,18 @@ public:
     device_memory() = default;
     device_memory(const device_memory&) = delete;
     device_memory& operator=(const device_memory&) = delete;
-    ~device_memory() { cudaFree(data_); }
+    ~device_memory() { gpu::release(data_); }
 
     /// Makes room for `bytes`. For the error message, unless `per_instance` is zero: the bytes per instance, and those
     /// already held for instances.
     void reserve(std::size_t bytes, std::size_t per_instance = 0, std::size_t held = 0) {
         if (bytes <= bytes_) return;
         release();
-        const cudaError_t status = cudaMalloc(&data_, bytes);
-        if (status == cudaErrorMemoryAllocation) {
-            cudaGetLastError();
+        const gpu::result status = gpu::allocate(&data_, bytes);
+        if (status == gpu::result::out_of_memory) {
+            gpu::forget_failure();
             std::size_t free = 0, total = 0;
-            MYRIAD_CUDA(cudaMemGetInfo(&free, &total));
+            MYRIAD_GPU_CALL(gpu::find_memory(&free, &total));
             statement advice;
             if (per_instance > 0) {
                 const auto fits = static_cast<std::int64_t>(0.9 * static_cast<double>(free + held) /
@@ -57,11 +57,11 @@ public:
                                              " GB are wanted and ", static_cast<double>(free) / 1e9, " of ",
                                              static_cast<double>(total) / 1e9, " GB are free", advice));
         }
-        check(status, "cudaMalloc");
+        check(status, "an allocation");
         bytes_ = bytes;
     }
     void release() {
-        MYRIAD_CUDA(cudaFree(data_));
+        MYRIAD_GPU_CALL(gpu::release(data_));
         data_ = nullptr;
         bytes_ = 0;
     }
@@ -75,30 +75,28 @@ private:
 
 class stream {
 public:
-    stream() { MYRIAD_CUDA(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking)); }
+    stream() { MYRIAD_GPU_CALL(gpu::create_stream(&stream_)); }
     stream(const stream&) = delete;
     stream& operator=(const stream&) = delete;
-    ~stream() { cudaStreamDestroy(stream_); }
-    cudaStream_t get() const { return stream_; }
+    ~stream() { gpu::destroy_stream(stream_); }
+    gpu::stream_handle get() const { return stream_; }
 
 private:
-    cudaStream_t stream_ = nullptr;
+    gpu::stream_handle stream_ = nullptr;
 };
 
 /// A CUDA event; a `timed` one records when it is reached.
 class event {
 public:
     enum class kind { plain, timed };
-    explicit event(kind k) {
-        MYRIAD_CUDA(cudaEventCreateWithFlags(&event_, k == kind::timed ? cudaEventDefault : cudaEventDisableTiming));
-    }
+    explicit event(kind k) { MYRIAD_GPU_CALL(gpu::create_event(&event_, k == kind::timed)); }
     event(const event&) = delete;
     event& operator=(const event&) = delete;
-    ~event() { cudaEventDestroy(event_); }
-    cudaEvent_t get() const { return event_; }
+    ~event() { gpu::destroy_event(event_); }
+    gpu::event_handle get() const { return event_; }
 
 private:
-    cudaEvent_t event_ = nullptr;
+    gpu::event_handle event_ = nullptr;
 };
 
 }  // namespace myriad::cuda

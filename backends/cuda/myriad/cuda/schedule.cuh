@@ -34,7 +34,7 @@ public:
     /// To be called after other instances have been uploaded.
     void forget_costs() { costs_known_ = false; }
 
-    void launch(kernel_launcher<R>& kernel, arguments now, cudaStream_t where) {
+    void launch(kernel_launcher<R>& kernel, arguments now, gpu::stream_handle where) {
         const schedule how = chosen(now.size, now.phases, kernel);
         kernel.note(how);
         if (how == schedule::in_order) return kernel.launch(now, nullptr, where);
@@ -67,9 +67,9 @@ private:
         }
         return wanted_ == schedule::by_cost && !sortable ? schedule::dynamic : wanted_;
     }
-    void launch_with_queue(kernel_launcher<R>& kernel, const arguments& now, cudaStream_t where) {
+    void launch_with_queue(kernel_launcher<R>& kernel, const arguments& now, gpu::stream_handle where) {
         auto* const queue = static_cast<unsigned long long*>(queue_.data());
-        MYRIAD_CUDA(cudaMemsetAsync(queue, 0, sizeof *queue, where));
+        MYRIAD_GPU_CALL(gpu::fill(queue, 0, sizeof *queue, where));
         kernel.launch(now, queue, where);
     }
 

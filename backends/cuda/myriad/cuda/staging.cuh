@@ -24,12 +24,12 @@ class pinned_memory {
 public:
     explicit pinned_memory(std::size_t bytes) {
         void* taken = nullptr;
-        MYRIAD_CUDA(cudaHostAlloc(&taken, bytes, cudaHostAllocPortable));
+        MYRIAD_GPU_CALL(gpu::allocate_pinned(&taken, bytes));
         data_ = static_cast<std::byte*>(taken);
     }
     pinned_memory(const pinned_memory&) = delete;
     pinned_memory& operator=(const pinned_memory&) = delete;
-    ~pinned_memory() { cudaFreeHost(data_); }
+    ~pinned_memory() { gpu::release_pinned(data_); }
     std::byte* data() const { return data_; }
 
 private:
@@ -44,32 +44,32 @@ public:
     static bool takes(const row_list& list) { return bytes_of(list) <= most && list.size() <= most / piece::padding; }
 
     /// On return, the host memory may be reused.
-    void upload(const row_list& list, cudaStream_t stream) {
+    void upload(const row_list& list, gpu::stream_handle stream) {
         finish_download();
-        check(cudaEventSynchronize(done_.get()), "an upload");
+        check(gpu::synchronise(done_.get()), "an upload");
         std::byte* at = memory_.data();
         for (const piece& p : piece::cut(list, capacity)) {
             p.gather(at);
-            MYRIAD_CUDA(p.begin_upload(at, stream));
+            MYRIAD_GPU_CALL(p.begin_upload(at, stream));
             at += p.bytes();
         }
-        MYRIAD_CUDA(cudaEventRecord(done_.get(), stream));
+        MYRIAD_GPU_CALL(gpu::record(done_.get(), stream));
     }
-    void begin_download(const row_list& list, cudaStream_t stream) {
+    void begin_download(const row_list& list, gpu::stream_handle stream) {
         finish_download();
         pieces_ = piece::cut(list, capacity);
         std::byte* at = memory_.data();
         for (const piece& p : pieces_) {
-            MYRIAD_CUDA(p.begin_download(at, stream));
+            MYRIAD_GPU_CALL(p.begin_download(at, stream));
             at += p.bytes();
         }
-        MYRIAD_CUDA(cudaEventRecord(done_.get(), stream));
+        MYRIAD_GPU_CALL(gpu::record(done_.get(), stream));
     }
     /// Waits for the download that `begin_download` started, and scatters its data.
     void finish_download() {
         const std::vector<piece> pieces = std::exchange(pieces_, {});
         if (pieces.empty()) return;
-        check(cudaEventSynchronize(done_.get()), "the integration on the GPU");
+        check(gpu::synchronise(done_.get()), "the integration on the GPU");
         std::byte* at = memory_.data();
         for (const piece& p : pieces) {
             p.scatter(at);
@@ -94,16 +94,16 @@ public:
     }
 
     /// On return, the host memory may be reused.
-    void upload(const row_list& list, cudaStream_t stream) {
+    void upload(const row_list& list, gpu::stream_handle stream) {
         each_piece(cut(list), [&](const piece& p, std::size_t, buffer& b) {
-            if (const cudaError_t status = b.wait(); status != cudaSuccess) return status;
+            if (const gpu::result status = b.wait(); status != gpu::result::success) return status;
             p.gather(b.data);
-            const cudaError_t status = p.begin_upload(b.data, stream);
-            return status == cudaSuccess ? b.mark(stream) : status;
+            const gpu::result status = p.begin_upload(b.data, stream);
+            return status == gpu::result::success ? b.mark(stream) : status;
         });
     }
     /// Enqueues the first pieces and returns.
-    void begin_download(const row_list& list, cudaStream_t stream) {
+    void begin_download(const row_list& list, gpu::stream_handle stream) {
         for (buffer& b : buffers_) check(b.wait(), "a copy to the GPU");
         pieces_ = cut(list);
         stream_ = stream;
@@ -117,9 +117,9 @@ public:
         const std::vector<piece> pieces = std::exchange(pieces_, {});
         check(buffers_[0].wait(), "the integration on the GPU");  // in one thread, as this may take long
         each_piece(pieces, [&](const piece& p, std::size_t i, buffer& b) {
-            if (const cudaError_t status = b.wait(); status != cudaSuccess) return status;
+            if (const gpu::result status = b.wait(); status != gpu::result::success) return status;
             p.scatter(b.data);
-            return i + buffers < pieces.size() ? ask(pieces[i + buffers], b) : cudaSuccess;
+            return i + buffers < pieces.size() ? ask(pieces[i + buffers], b) : gpu::result::success;
         });
     }
 
@@ -131,8 +131,8 @@ private:
         std::byte* data = nullptr;
         event copied{event::kind::plain};
 
-        cudaError_t mark(cudaStream_t stream) { return cudaEventRecord(copied.get(), stream); }
-        cudaError_t wait() { return cudaEventSynchronize(copied.get()); }
+        gpu::result mark(gpu::stream_handle stream) { return gpu::record(copied.get(), stream); }
+        gpu::result wait() { return gpu::synchronise(copied.get()); }
     };
 
     /// Pieces large enough to saturate the bus, and equally many for each thread.
@@ -147,34 +147,35 @@ private:
     /// handled by one thread, in order. Throws `error` if any call fails.
     template <class Work>
     void each_piece(const std::vector<piece>& pieces, Work&& work) {
-        std::atomic<cudaError_t> failed{cudaSuccess};
+        std::atomic<gpu::result> failed{gpu::result::success};
         const auto side_by_side = static_cast<std::int64_t>(std::min(workers, pieces.size()));
         host::in_parallel(side_by_side, 1, [&](std::int64_t first, std::int64_t last) {
             int before = device_;
-            cudaGetDevice(&before);
-            cudaSetDevice(device_);
+            gpu::find_device(&before);
+            gpu::set_device(device_);
             for (std::size_t turn = 0; turn < pieces.size(); turn += workers) {
                 const std::size_t end = std::min(turn + static_cast<std::size_t>(last), pieces.size());
-                for (std::size_t i = turn + static_cast<std::size_t>(first); i < end && failed == cudaSuccess; ++i) {
-                    const cudaError_t status = work(pieces[i], i, buffers_[i % buffers]);
-                    if (status != cudaSuccess) failed = status;
+                for (std::size_t i = turn + static_cast<std::size_t>(first); i < end && failed == gpu::result::success;
+                     ++i) {
+                    const gpu::result status = work(pieces[i], i, buffers_[i % buffers]);
+                    if (status != gpu::result::success) failed = status;
                 }
             }
-            cudaSetDevice(before);
+            gpu::set_device(before);
         });
         check(failed, "a copy to or from the GPU");
     }
 
-    cudaError_t ask(const piece& p, buffer& b) {
-        const cudaError_t status = p.begin_download(b.data, stream_);
-        return status == cudaSuccess ? b.mark(stream_) : status;
+    gpu::result ask(const piece& p, buffer& b) {
+        const gpu::result status = p.begin_download(b.data, stream_);
+        return status == gpu::result::success ? b.mark(stream_) : status;
     }
 
     int device_;
     pinned_memory memory_{buffers * largest};
     buffer buffers_[buffers];
     std::vector<piece> pieces_;  // of the download in progress
-    cudaStream_t stream_ = nullptr;
+    gpu::stream_handle stream_ = nullptr;
 };
 
 /// Staging memory of a device, borrowed from a pool for one transfer; the pool grows to the number of concurrent

@@ -20,16 +20,16 @@ public:
     /// Where kernels read.
     const std::uint32_t* word() const { return static_cast<const std::uint32_t*>(word_.data()); }
     /// Before a launch in that stream: takes back what was asked of earlier kernels.
-    void clear(cudaStream_t where) {
+    void clear(gpu::stream_handle where) {
         if (!used_.exchange(false)) return;
-        MYRIAD_CUDA(cudaStreamSynchronize(asking_.get()));
-        MYRIAD_CUDA(cudaMemsetAsync(word_.data(), 0, sizeof(std::uint32_t), where));
+        MYRIAD_GPU_CALL(gpu::synchronise(asking_.get()));
+        MYRIAD_GPU_CALL(gpu::fill(word_.data(), 0, sizeof(std::uint32_t), where));
     }
     /// Any thread may call it, with the device current.
     void ask(detail::stop_request how) {
         used_ = true;
-        MYRIAD_CUDA(cudaMemcpyAsync(word_.data(), pinned_ + static_cast<std::uint32_t>(how), sizeof(std::uint32_t),
-                                    cudaMemcpyHostToDevice, asking_.get()));
+        MYRIAD_GPU_CALL(gpu::copy(word_.data(), pinned_ + static_cast<std::uint32_t>(how), sizeof(std::uint32_t),
+                                  gpu::direction::to_device, asking_.get()));
     }
 
 private:
@@ -38,7 +38,7 @@ private:
         static const std::uint32_t* const values = [] {
             constexpr std::uint32_t count = 4;
             void* memory = nullptr;
-            MYRIAD_CUDA(cudaHostAlloc(&memory, count * sizeof(std::uint32_t), cudaHostAllocPortable));
+            MYRIAD_GPU_CALL(gpu::allocate_pinned(&memory, count * sizeof(std::uint32_t)));
             auto* const all = static_cast<std::uint32_t*>(memory);
             for (std::uint32_t i = 0; i < count; ++i) all[i] = i;
             return all;

@@ -63,9 +63,9 @@ public:
         const current_device here(device_);
         arguments to = host;
         walk(to, [&](auto*& target, auto* source, std::int64_t components, array_access, array_kind) {
-            MYRIAD_CUDA(cudaMemcpy2DAsync(target, bytes_of(target, host.size), source, bytes_of(source, count_),
-                                          bytes_of(source, count), static_cast<std::size_t>(components),
-                                          cudaMemcpyDeviceToHost, stream_.get()));
+            MYRIAD_GPU_CALL(gpu::copy_rows(target, bytes_of(target, host.size), source, bytes_of(source, count_),
+                                           bytes_of(source, count), static_cast<std::size_t>(components),
+                                           gpu::direction::to_host, stream_.get()));
         });
         base::wait();
     }
@@ -77,9 +77,9 @@ public:
             if (kind == array_kind::samples) return;
             const std::size_t distance = bytes_of(target, stride);
             for (std::int64_t c = 0; c < components; ++c)
-                MYRIAD_CUDA(cudaMemcpy2DAsync(target + c * host.size, distance, source + c * count_, distance,
-                                              sizeof *target, static_cast<std::size_t>((count_ + stride - 1) / stride),
-                                              cudaMemcpyDeviceToHost, stream_.get()));
+                MYRIAD_GPU_CALL(gpu::copy_rows(target + c * host.size, distance, source + c * count_, distance,
+                                               sizeof *target, static_cast<std::size_t>((count_ + stride - 1) / stride),
+                                               gpu::direction::to_host, stream_.get()));
         });
         base::wait();
     }

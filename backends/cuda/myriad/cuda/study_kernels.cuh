@@ -10,7 +10,7 @@
 #include "myriad/kernel/study/reduced_values.hpp"
 
 // Templates, so that every file that includes this may have them, or, compiled at run time, found by their names.
-#if defined(__CUDACC_RTC__)
+#if defined(MYRIAD_COMPILED_AT_RUN_TIME)
 #define MYRIAD_STUDY_KERNEL extern "C" __global__
 #else
 #define MYRIAD_STUDY_KERNEL \

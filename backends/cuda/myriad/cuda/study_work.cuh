@@ -40,7 +40,7 @@ public:
     /// Sets the components; `find` gives the place of a host's array.
     template <class Find>
     void fill(const study_kernels& by, const std::shared_ptr<const generation>& how, Find&& find,
-              const instance_range& range, std::uint8_t* ended, status* statuses, cudaStream_t stream) {
+              const instance_range& range, std::uint8_t* ended, status* statuses, gpu::stream_handle stream) {
         upload_tables(how, stream);
         fill_arguments all{};
         all.seed = how->seed;
@@ -64,13 +64,13 @@ public:
     /// Calls the model's `generate`; the pointers are those on the device.
     template <class R>
     void generate(const study_kernels& by, const instance_arrays<array_pointer, R>& arrays, const instance_range& range,
-                  const shared_parameters<R>& shared, std::uint64_t seed, cudaStream_t stream) {
+                  const shared_parameters<R>& shared, std::uint64_t seed, gpu::stream_handle stream) {
         require(by.generate_instances != nullptr, "the model's kernel has no generate to set instances");
         launch(by.generate_instances, blocks_for(range.size), 0, stream, arrays, range, shared, seed);
     }
     /// The values of a rule in all instances of a chunk, in memory of this object.
     value_array values_of(const study_kernels& by, const device_values& what, const instance_range& range,
-                          cudaStream_t stream) {
+                          gpu::stream_handle stream) {
         drawn_.reserve(bytes_of(what.type) * static_cast<std::size_t>(range.size));
         fill_arguments one{};
         one.count = 1;
@@ -82,7 +82,7 @@ public:
         return {drawn_.data(), what.type, range.size, 1};
     }
     /// The values, one instance after the other, somewhere on the device.
-    const void* gathered(const study_kernels& by, const value_array& all, cudaStream_t stream) {
+    const void* gathered(const study_kernels& by, const value_array& all, gpu::stream_handle stream) {
         if (all.inner == 1 && all.phases == nullptr) return all.values;
         const std::size_t bytes = bytes_of(all.type);
         gathered_.reserve(bytes * static_cast<std::size_t>(all.size * all.inner));
@@ -93,14 +93,14 @@ public:
     }
     /// Waits for the result.
     std::vector<std::int64_t> reduce(const study_kernels& by, const value_array& all, const status* how,
-                                     const device_reduction& what, cudaStream_t stream) {
+                                     const device_reduction& what, gpu::stream_handle stream) {
         std::vector<std::int64_t> words(static_cast<std::size_t>(what.words(all.inner)));
         const std::size_t bytes = words.size() * sizeof(std::int64_t);
         words_.reserve(bytes);
-        MYRIAD_CUDA(cudaMemsetAsync(words_.data(), 0, bytes, stream));
+        MYRIAD_GPU_CALL(gpu::fill(words_.data(), 0, bytes, stream));
         reduce_arguments a{all, how, what.kind, nullptr, 0, false, static_cast<unsigned long long*>(words_.data())};
         std::size_t shared = (sum_digits + 1) * sizeof(unsigned long long);
-        dim3 blocks = blocks_for(all.size);
+        gpu::grid blocks = blocks_for(all.size);
         const bool of_each = what.kind != reduction_kind::histogram && what.kind != reduction_kind::statuses;
         if (of_each) {  // inner value
             constexpr std::int64_t most = 65'535;
@@ -110,7 +110,7 @@ public:
         if (what.kind == reduction_kind::histogram || what.kind == reduction_kind::histograms) {
             const std::size_t edges = what.edges.size() * sizeof(double);
             edges_.reserve(edges);
-            MYRIAD_CUDA(cudaMemcpyAsync(edges_.data(), what.edges.data(), edges, cudaMemcpyHostToDevice, stream));
+            MYRIAD_GPU_CALL(gpu::copy(edges_.data(), what.edges.data(), edges, gpu::direction::to_device, stream));
             a.edges = static_cast<const double*>(edges_.data());
             a.bins = static_cast<std::int64_t>(what.edges.size()) - 1;
             constexpr std::size_t every_block_has = 48 * 1024;
@@ -119,8 +119,8 @@ public:
             shared = a.in_shared_memory ? counts : 0;
         }
         launch(by.reduce_values, blocks, shared, stream, a);
-        MYRIAD_CUDA(cudaMemcpyAsync(words.data(), words_.data(), bytes, cudaMemcpyDeviceToHost, stream));
-        check(cudaStreamSynchronize(stream), "a reduction on the GPU");
+        MYRIAD_GPU_CALL(gpu::copy(words.data(), words_.data(), bytes, gpu::direction::to_host, stream));
+        check(gpu::synchronise(stream), "a reduction on the GPU");
         return words;
     }
 
@@ -136,19 +136,18 @@ private:
     static constexpr unsigned threads = 256;
 
     /// Enough to fill any GPU, each with several instances if there are many, so that what a block adds up is worth it.
-    static dim3 blocks_for(std::int64_t size) {
+    static gpu::grid blocks_for(std::int64_t size) {
         constexpr std::int64_t most = 4096;
-        return dim3(static_cast<unsigned>(std::clamp((size + threads - 1) / threads, std::int64_t{1}, most)));
+        return {static_cast<unsigned>(std::clamp((size + threads - 1) / threads, std::int64_t{1}, most))};
     }
     template <class... Arguments>
-    static void launch(const void* kernel, dim3 blocks, std::size_t shared, cudaStream_t stream,
+    static void launch(const void* kernel, gpu::grid blocks, std::size_t shared, gpu::stream_handle stream,
                        const Arguments&... arguments) {
         void* all[] = {const_cast<Arguments*>(&arguments)...};
-        check(cudaLaunchKernel(kernel, blocks, dim3(threads), all, shared, stream),
-              "the launch of a kernel for a study");
+        check(gpu::launch(kernel, blocks, threads, all, shared, stream), "the launch of a kernel for a study");
     }
 
-    void upload_tables(const std::shared_ptr<const generation>& how, cudaStream_t stream) {
+    void upload_tables(const std::shared_ptr<const generation>& how, gpu::stream_handle stream) {
         if (of_tables_ == how) return;
         offsets_.clear();
         std::size_t values = 0;
@@ -156,14 +155,14 @@ private:
             offsets_.push_back(values);
             if (c.rule.table != nullptr) values += static_cast<std::size_t>(c.rule.length);
         }
-        check(cudaStreamSynchronize(stream), "the integration on the GPU");  // which may use what is replaced
+        check(gpu::synchronise(stream), "the integration on the GPU");  // which may use what is replaced
         tables_.reserve(values * sizeof(double));
         for (std::size_t c = 0; c < how->components.size(); ++c) {
             const axis_rule& rule = how->components[c].rule;
             if (rule.table == nullptr) continue;
-            MYRIAD_CUDA(cudaMemcpyAsync(static_cast<double*>(tables_.data()) + offsets_[c], rule.table,
-                                        static_cast<std::size_t>(rule.length) * sizeof(double), cudaMemcpyHostToDevice,
-                                        stream));
+            MYRIAD_GPU_CALL(gpu::copy(static_cast<double*>(tables_.data()) + offsets_[c], rule.table,
+                                      static_cast<std::size_t>(rule.length) * sizeof(double), gpu::direction::to_device,
+                                      stream));
         }
         of_tables_ = how;
     }

@@ -37,21 +37,21 @@ inline std::size_t bytes_of(const row_list& list) {
 
 /// Whether host memory is pinned. Testing its first byte is enough, as arrays are pinned as a whole.
 inline bool is_pinned(const void* host) {
-    cudaPointerAttributes facts{};
-    MYRIAD_CUDA(cudaPointerGetAttributes(&facts, host));
-    return facts.type == cudaMemoryTypeHost;
+    bool pinned = false;
+    MYRIAD_GPU_CALL(gpu::find_pinned(&pinned, host));
+    return pinned;
 }
 
 /// One copy per array. The host memory must be pinned.
-inline void copy_directly(const row_list& list, cudaMemcpyKind way, cudaStream_t stream) {
+inline void copy_directly(const row_list& list, gpu::direction way, gpu::stream_handle stream) {
     for (const array_rows& rows : list) {
-        const bool up = way == cudaMemcpyHostToDevice;
+        const bool up = way == gpu::direction::to_device;
         void *const to = up ? rows.device : rows.host, *const from = up ? rows.host : rows.device;
         if (rows.pitch == rows.width || rows.count == 1) {
-            MYRIAD_CUDA(cudaMemcpyAsync(to, from, rows.width * rows.count, way, stream));
+            MYRIAD_GPU_CALL(gpu::copy(to, from, rows.width * rows.count, way, stream));
         } else {
-            MYRIAD_CUDA(cudaMemcpy2DAsync(to, up ? rows.width : rows.pitch, from, up ? rows.pitch : rows.width,
-                                          rows.width, rows.count, way, stream));
+            MYRIAD_GPU_CALL(gpu::copy_rows(to, up ? rows.width : rows.pitch, from, up ? rows.pitch : rows.width,
+                                           rows.width, rows.count, way, stream));
         }
     }
 }
@@ -88,11 +88,11 @@ public:
         each_run(buffer, [](std::byte* host, std::byte* staged, std::size_t n) { copy_past_caches(host, staged, n); });
     }
     /// Copy from a pinned buffer to the device, and back.
-    cudaError_t begin_upload(const std::byte* buffer, cudaStream_t stream) const {
-        return cudaMemcpyAsync(device_, buffer, bytes_, cudaMemcpyHostToDevice, stream);
+    gpu::result begin_upload(const std::byte* buffer, gpu::stream_handle stream) const {
+        return gpu::copy(device_, buffer, bytes_, gpu::direction::to_device, stream);
     }
-    cudaError_t begin_download(std::byte* buffer, cudaStream_t stream) const {
-        return cudaMemcpyAsync(buffer, device_, bytes_, cudaMemcpyDeviceToHost, stream);
+    gpu::result begin_download(std::byte* buffer, gpu::stream_handle stream) const {
+        return gpu::copy(buffer, device_, bytes_, gpu::direction::to_host, stream);
     }
 
 private:

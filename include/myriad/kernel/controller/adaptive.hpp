@@ -110,7 +110,7 @@ struct adaptive_stepping {
             if constexpr (solves_linear_systems<Method>) {
                 mask singular = trial.singular;
                 detail::each_component<Method, n_state<Model>>(
-                    [&](int c) MYRIAD_LAMBDA { singular = singular & is_finite(trial.k[0][c]); });
+                    [&](int c) MYRIAD_LAMBDA { singular = singular & is_finite(trial.slope_start()[c]); });
                 s.steps.last_singular = select(moved & !finite, singular, s.steps.last_singular);
             }
             stuck = rejected & (abs(s.h) <= S(args.minimum_step) + rounding);
@@ -137,12 +137,12 @@ struct adaptive_stepping {
         return status::not_finite;
     }
 
-    MYRIAD_FUNCTION void advance(const mask& accepted, const S& t1, const mask&) {
+    MYRIAD_FUNCTION mask advance(const mask& accepted, const S& t1, const mask&) {
         if constexpr (keeps_low)
             s.steps.time_low = select(accepted, (s.h + s.steps.time_low) - (t1 - s.data.t), s.steps.time_low);
         s.data.t = select(accepted, t1, s.data.t);
         // The last step ends there; an earlier one may, by rounding or at an event.
-        s.ended = s.ended | (accepted & (t1 == s.data.t_end));
+        return accepted & (t1 == s.data.t_end);
     }
 
     /// Whether lane i stagnates before a point where its right-hand side has no value: at the pace of its last

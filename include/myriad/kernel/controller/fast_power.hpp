@@ -78,10 +78,8 @@ MYRIAD_FUNCTION S part_by_part(const S& x, Part&& part) {
 /// log2(x) within about 2e-5, for normal x.
 template <class S>
 MYRIAD_FUNCTION S fast_log2(const S& x) {
-#if defined(__CUDA_ARCH__)
-    float y;  // without the extra instructions for subnormal numbers
-    asm("lg2.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(static_cast<float>(x)));
-    return static_cast<S>(y);
+#if MYRIAD_ON_GPU
+    return static_cast<S>(gpu::approximate_log2(static_cast<float>(x)));
 #else
     return detail::part_by_part(x, [](const auto& part) MYRIAD_LAMBDA { return detail::fast_log2_of(part); });
 #endif
@@ -90,10 +88,8 @@ MYRIAD_FUNCTION S fast_log2(const S& x) {
 /// 2^z within a relative error of about 4e-6, for normal results.
 template <class S>
 MYRIAD_FUNCTION S fast_exp2(const S& z) {
-#if defined(__CUDA_ARCH__)
-    float y;
-    asm("ex2.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(static_cast<float>(z)));
-    return static_cast<S>(y);
+#if MYRIAD_ON_GPU
+    return static_cast<S>(gpu::approximate_exp2(static_cast<float>(z)));
 #else
     return detail::part_by_part(z, [](const auto& part) MYRIAD_LAMBDA { return detail::fast_exp2_of(part); });
 #endif

@@ -94,7 +94,7 @@ struct fixed_stepping {
     }
     MYRIAD_FUNCTION status failure_of(int) const { return status::not_finite; }
 
-    MYRIAD_FUNCTION void advance(const mask& accepted, const S& t1, const mask& at_event) {
+    MYRIAD_FUNCTION mask advance(const mask& accepted, const S& t1, const mask& at_event) {
         s.steps.done = count_where(accepted, s.steps.done);
         s.steps.left = select(accepted, s.steps.left - count(1), s.steps.left);
         if constexpr (has_events<Model>) {
@@ -109,12 +109,10 @@ struct fixed_stepping {
             s.data.t = s.now();
             for_each_lane(accepted & s.final_step, [&](int i) MYRIAD_LAMBDA { set_lane(s.data.t, i, stop_of(i)); });
         }
-        if constexpr (has_stops<Model>) {
-            s.ended = s.ended | (accepted & s.final_step & (s.data.t == s.data.t_end));
-        } else {
-            s.ended = s.ended | (accepted & s.final_step);
-        }
-        if constexpr (has_events<Model>) s.ended = s.ended | (accepted & at_event & (s.data.t == s.data.t_end));
+        mask over = accepted & s.final_step;
+        if constexpr (has_stops<Model>) over = over & (s.data.t == s.data.t_end);
+        if constexpr (has_events<Model>) over = over | (accepted & at_event & (s.data.t == s.data.t_end));
+        return over;
     }
 
     MYRIAD_FUNCTION bool stagnates(int) { return false; }

@@ -11,17 +11,12 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// |error| / scale. In CUDA threads within 1e-6, over the whole range of S except for a subnormal scale, and 0 if the
+/// |error| / scale. On GPUs within 1e-6, over the whole range of S except for a subnormal scale, and 0 if the
 /// reciprocal of the scale is subnormal.
 template <class S>
 MYRIAD_FUNCTION S error_ratio(const S& error, const S& scale) {
-#if defined(__CUDA_ARCH__)
-    S reciprocal;
-    if constexpr (std::is_same_v<S, double>) {
-        asm("rcp.approx.ftz.f64 %0, %1;" : "=d"(reciprocal) : "d"(scale));
-    } else {
-        asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(reciprocal) : "f"(scale));
-    }
+#if MYRIAD_ON_GPU
+    const S reciprocal = gpu::approximate_reciprocal(scale);
     return abs(error) * reciprocal;
 #else
     return abs(error) / scale;
@@ -45,8 +40,8 @@ inline constexpr bool larger_scale_keeps_nan = false;
 template <class S>
 inline constexpr bool tells_infinity = false;
 
-#if defined(__CUDA_ARCH__)
-// The same in CUDA threads. In double precision the larger of two numbers by the upper halves of their bits, off the
+#if MYRIAD_ON_GPU
+// The same on GPUs. In double precision the larger of two numbers by the upper halves of their bits, off the
 // floating-point pipe: leaving out the lower halves changes a number by at most 1e-6 of its size.
 
 template <>
@@ -56,23 +51,20 @@ inline constexpr bool larger_scale_keeps_nan<double> = true;
 
 MYRIAD_FUNCTION double larger_magnitude(const double& a, const double& b) {
     // with a lower half that turns infinity into NaN
-    return __hiloint2double(::max(__double2hiint(a) & 0x7fffffff, __double2hiint(b) & 0x7fffffff), 1);
+    return gpu::from_halves(::max(gpu::upper_half(a) & 0x7fffffff, gpu::upper_half(b) & 0x7fffffff), 1);
 }
 /// As unsigned integers, the bits of a NaN are above the bits of infinity.
 MYRIAD_FUNCTION double larger_scale(const double& a, const double& b) {
-    const unsigned upper = ::max(static_cast<unsigned>(__double2hiint(a)), static_cast<unsigned>(__double2hiint(b)));
-    return __hiloint2double(static_cast<int>(upper), 0);
+    const unsigned upper = ::max(static_cast<unsigned>(gpu::upper_half(a)), static_cast<unsigned>(gpu::upper_half(b)));
+    return gpu::from_halves(static_cast<int>(upper), 0);
 }
 
-#if __CUDA_ARCH__ >= 800  // one instruction instead of a comparison, a selection and a sum that finds NaN
+#if defined(MYRIAD_GPU_HAS_LARGER_OR_NAN)  // one instruction instead of a comparison, a selection and a sum that finds
+                                           // NaN
 template <>
 inline constexpr bool larger_scale_keeps_nan<float> = true;
 
-MYRIAD_FUNCTION float larger_scale(const float& a, const float& b) {
-    float larger;
-    asm("max.NaN.f32 %0, %1, %2;" : "=f"(larger) : "f"(a), "f"(b));
-    return larger;
-}
+MYRIAD_FUNCTION float larger_scale(const float& a, const float& b) { return gpu::larger_or_nan(a, b); }
 MYRIAD_FUNCTION float larger_magnitude(const float& a, const float& b) { return larger_scale(abs(a), abs(b)); }
 #endif
 #endif

@@ -22,7 +22,7 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 ///                                    of those whose step does not advance t, the ones that it returns
 ///     failure_of(i)                  the status of lane i, if it is stuck
 ///     advance(accepted, t1, at_event)
-///                                    advances time in accepted lanes; sets s.ended at the phase's end
+///                                    advances time in accepted lanes; returns those that are at the phase's end
 ///     move(i, t)                     a hook has moved the end of the phase of lane i, which is at t
 ///     resume(i, h)                   continues with step h after event location
 ///     time(i)                        time of the committed state

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: MIT
-// The execution-space macros: all that depends on the compiler, but for backends/cuda and a few functions with
-// different code for CUDA devices. tests/scripts/check_include_graph.py lists the headers that have such.
+// The execution-space macros: all that depends on the compiler, but for gpu/runtime.hpp and a few functions with
+// different code for GPUs. tests/scripts/check_include_graph.py lists the headers that have such.
 #pragma once
 
+#include "myriad/gpu/runtime.hpp"
 #include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/core/ieee.hpp"
 
 /// A pragma whose text contains a macro's argument.
 #define MYRIAD_PRAGMA(text) _Pragma(#text)
-#if defined(__CUDACC__)
-// A function without MYRIAD_FUNCTION is host code: nvcc would only warn if a kernel calls it, and leave the call out.
-#pragma nv_diag_error 20011, 20013, 20014, 20015
-/// A function of the kernel body: device code under nvcc, inlined host code elsewhere. Required for a model's functions
+#if MYRIAD_FOR_GPU
+/// A function of the kernel body: device code of GPUs, inlined host code elsewhere. Required for a model's functions
 /// and the helpers they call, so that files compiled for different instruction sets share no copy of them.
 #define MYRIAD_FUNCTION __host__ __device__ __forceinline__ constexpr
 /// `MYRIAD_FUNCTION` for a lambda, placed between its parameters and its body.
@@ -24,15 +23,12 @@
 #define MYRIAD_RARE_FUNCTION __host__ __device__ __noinline__
 /// A constant at namespace scope that device code reads from constant memory as an operand of its instructions.
 #define MYRIAD_CONSTANT_MEMORY __constant__
-/// An optimisation barrier: hides from the compiler that a pointer or index has not changed, so that addresses are
-/// recomputed instead of kept in registers through the loop.
-#define MYRIAD_OPTIMISATION_BARRIER(value) asm volatile("" : "+l"(value))
 /// An optimisation barrier: what lies in memory that others might change is written before it and read again after it.
 #define MYRIAD_MEMORY_BARRIER asm volatile("" ::: "memory")
-#if defined(__CUDA_ARCH__)
+#if MYRIAD_ON_GPU
 /// A point where diverged threads of a warp reconverge; all threads that have not exited reach it. The compiler's own
 /// reconvergence points are not enough: threads that took instances one by one were seen never to reconverge.
-#define MYRIAD_RECONVERGE __syncwarp()
+#define MYRIAD_RECONVERGE ::myriad::gpu::synchronise_warp(~::myriad::gpu::lane_mask(0))
 /// Unrolls the following loop; in device code only up to 64 iterations, so that larger states stay loops.
 #define MYRIAD_UNROLL _Pragma("unroll 64")
 /// The same with limits of its own for device code and for the CPU, which are literals, as a pragma sees only their
@@ -46,8 +42,8 @@
 /// The same as MYRIAD_UNROLL in device code, which can only then keep what it indexes in registers; on the CPU the
 /// following loop stays one, for code that is rarely reached and would take long to compile.
 #define MYRIAD_UNROLL_ON_GPU MYRIAD_UNROLL
-/// a * b rounded, where nvcc would fuse it with an addition: for results that are to be the host's.
-#define MYRIAD_ROUNDED_PRODUCT(a, b) __dmul_rn(a, b)
+/// a * b rounded, where the compiler would fuse it with an addition: for results that are to be the host's.
+#define MYRIAD_ROUNDED_PRODUCT(a, b) ::myriad::gpu::rounded_product(a, b)
 #else
 #define MYRIAD_RECONVERGE static_cast<void>(0)
 #define MYRIAD_UNROLL
@@ -58,8 +54,6 @@
 #define MYRIAD_ROUNDED_PRODUCT(a, b) ((a) * (b))
 #endif
 #define MYRIAD_WHOLE_LOOP static_cast<void>(0)
-#define MYRIAD_TARGET cuda_lane
-#define MYRIAD_BACKEND_HEADER "myriad/cuda/run.cuh"
 #else
 #if defined(MYRIAD_OUT_OF_LINE)  // tests' kernels, which need not be fast: compiled in less than half of the time
 #define MYRIAD_FUNCTION inline constexpr
@@ -120,7 +114,7 @@
 #endif
 
 // Whether the target has a fused multiply-add, which fma then uses for every kind of number.
-#if defined(__FMA__) || defined(__AVX512F__) || defined(__ARM_FEATURE_FMA) || defined(__CUDA_ARCH__)
+#if defined(__FMA__) || defined(__AVX512F__) || defined(__ARM_FEATURE_FMA) || MYRIAD_ON_GPU
 #define MYRIAD_FUSED 1
 #else
 #define MYRIAD_FUSED 0

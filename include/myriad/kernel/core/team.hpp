@@ -8,7 +8,7 @@
 
 #include "myriad/kernel/core/macros.hpp"
 
-#if defined(MYRIAD_SIMULATED_TEAM) && !defined(__CUDACC__)
+#if defined(MYRIAD_SIMULATED_TEAM) && !MYRIAD_FOR_GPU
 // Tests run the threads of a block, or of a single team, one after the other on a CPU, each up to where it waits for
 // the others.
 namespace myriad::simulated_team {
@@ -46,9 +46,9 @@ template <class Model>
 using whole_of = typename team_of_model<Model>::whole;
 
 /// Where the shared memory of this thread's block begins. Not constexpr, which has no such variables.
-#if defined(__CUDACC__)
+#if MYRIAD_FOR_GPU
 __host__ __device__ __forceinline__ void* memory_of_block() {
-#if defined(__CUDA_ARCH__)
+#if MYRIAD_ON_GPU
     extern __shared__ __align__(16) double shared_by_block[];  // so that a thread may load 16 bytes at a time
     return shared_by_block;
 #else
@@ -67,23 +67,24 @@ constexpr bool is_size_of_team(int threads) {
     return threads > 0 && threads <= most_threads_of_team && (threads & (threads - 1)) == 0;
 }
 
-/// What `threads` threads do together. Each function is called by all of them, and returns the same in all. Up to 32
-/// are threads of one warp; more are all threads of a block.
+/// What `threads` threads do together. Each function is called by all of them, and returns the same in all. Up to
+/// a warp's number they are threads of one warp; more are all threads of a block.
 template <int threads>
 struct thread_team {
     static_assert(is_size_of_team(threads), "the threads of a team are a power of two, at most 256");
     /// Whether the team is a block.
-    static constexpr bool is_block = threads > 32;
+    static constexpr bool is_block = threads > gpu::warp_size;
     /// Bytes at the beginning of a block's shared memory through which such a team exchanges numbers, one for each
     /// warp.
-    static constexpr int exchange_bytes = is_block ? threads / 32 * static_cast<int>(sizeof(std::uint64_t)) : 0;
+    static constexpr int exchange_bytes =
+        is_block ? threads / gpu::warp_size * static_cast<int>(sizeof(std::uint64_t)) : 0;
 
     /// The number of this thread within its team.
     static MYRIAD_FUNCTION int number_of_thread() {
         if constexpr (threads == 1) return 0;
-#if defined(__CUDA_ARCH__)
+#if MYRIAD_ON_GPU
         return static_cast<int>(threadIdx.x) % threads;
-#elif defined(MYRIAD_SIMULATED_TEAM) && !defined(__CUDACC__)
+#elif defined(MYRIAD_SIMULATED_TEAM) && !MYRIAD_FOR_GPU
         return simulated_team::number_of_thread() % threads;
 #else
         return 0;
@@ -91,9 +92,9 @@ struct thread_team {
     }
     /// The number of the team within its block.
     static MYRIAD_FUNCTION int number_of_team() {
-#if defined(__CUDA_ARCH__)
+#if MYRIAD_ON_GPU
         return static_cast<int>(threadIdx.x) / threads;
-#elif defined(MYRIAD_SIMULATED_TEAM) && !defined(__CUDACC__)
+#elif defined(MYRIAD_SIMULATED_TEAM) && !MYRIAD_FOR_GPU
         return simulated_team::number_of_thread() / threads;
 #else
         return 0;
@@ -105,13 +106,13 @@ struct thread_team {
     /// Waits for all threads, which then see what the others have written.
     static MYRIAD_FUNCTION void synchronise() {
         if constexpr (threads > 1) {
-#if defined(__CUDA_ARCH__)
+#if MYRIAD_ON_GPU
             if constexpr (is_block) {
                 __syncthreads();
             } else {
-                __syncwarp(mask());
+                gpu::synchronise_warp(mask());
             }
-#elif defined(MYRIAD_SIMULATED_TEAM) && !defined(__CUDACC__)
+#elif defined(MYRIAD_SIMULATED_TEAM) && !MYRIAD_FOR_GPU
             simulated_team::synchronise(threads);
 #endif
         }
@@ -123,11 +124,11 @@ struct thread_team {
         if constexpr (threads == 1) {
             return holds;
         } else {
-#if defined(__CUDA_ARCH__)
+#if MYRIAD_ON_GPU
             if constexpr (is_block) {
                 return __syncthreads_and(holds) != 0;
             } else {
-                return __all_sync(mask(), holds) != 0;
+                return gpu::all(mask(), holds);
             }
 #else
             return largest_of(std::uint64_t{!holds}) == 0;
@@ -163,7 +164,7 @@ struct thread_team {
     template <class T>
     static MYRIAD_FUNCTION T of_thread(int number, T own) {
         if constexpr (threads > 1) {
-#if defined(__CUDA_ARCH__)
+#if MYRIAD_ON_GPU
             if constexpr (is_block) {
                 T* const exchanged = static_cast<T*>(memory_of_block());
                 if (number_of_thread() == number) *exchanged = own;
@@ -171,9 +172,9 @@ struct thread_team {
                 own = *exchanged;
                 __syncthreads();  // all have read it
             } else {
-                own = __shfl_sync(mask(), own, number, threads);
+                own = gpu::shuffle(mask(), own, number, threads);
             }
-#elif defined(MYRIAD_SIMULATED_TEAM) && !defined(__CUDACC__)
+#elif defined(MYRIAD_SIMULATED_TEAM) && !MYRIAD_FOR_GPU
             std::uint64_t bits = 0;
             __builtin_memcpy(&bits, &own, sizeof own);
             bits = simulated_team::exchange(bits, number_of_team() * threads + number, threads);
@@ -190,12 +191,12 @@ struct thread_team {
     }
 
 private:
-#if defined(__CUDA_ARCH__)
-    static __device__ __forceinline__ unsigned mask() {
-        if constexpr (threads == 32) {
-            return 0xffffffffu;
+#if MYRIAD_ON_GPU
+    static __device__ __forceinline__ gpu::lane_mask mask() {
+        if constexpr (threads == gpu::warp_size) {
+            return ~gpu::lane_mask(0);
         } else {
-            return ((1u << threads) - 1u) << (threadIdx.x % 32 / threads * threads);
+            return ((gpu::lane_mask(1) << threads) - 1u) << (threadIdx.x % gpu::warp_size / threads * threads);
         }
     }
 #endif
@@ -204,12 +205,12 @@ private:
     /// The largest of the threads' unsigned integers.
     template <class U>
     static MYRIAD_FUNCTION U largest_of(U own) {
-#if defined(__CUDA_ARCH__)
+#if MYRIAD_ON_GPU
         if constexpr (is_block) {
-            constexpr int warps = threads / 32;
+            constexpr int lanes = gpu::warp_size, warps = threads / lanes;
             U* const of_warps = static_cast<U*>(memory_of_block());
-            own = thread_team<32>::largest_in_warp(own);
-            if (number_of_thread() % 32 == 0) of_warps[number_of_thread() / 32] = own;
+            own = thread_team<lanes>::largest_in_warp(own);
+            if (number_of_thread() % lanes == 0) of_warps[number_of_thread() / lanes] = own;
             __syncthreads();
             own = thread_team<warps>::largest_in_warp(of_warps[number_of_thread() % warps]);
             __syncthreads();  // all have read them
@@ -224,9 +225,9 @@ private:
     /// The same in a warp, or in a simulated team.
     template <class U>
     static MYRIAD_FUNCTION U largest_in_warp(U own) {
-#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800
+#if defined(MYRIAD_GPU_HAS_LARGEST_OF_WARP)
         if constexpr (sizeof(U) == sizeof(unsigned)) {
-            return __reduce_max_sync(mask(), own);
+            return gpu::largest_of_warp(mask(), own);
         } else {
             return largest_by_pairs(own);
         }
@@ -246,9 +247,9 @@ private:
     /// The value of the thread whose number differs in one bit.
     template <class U>
     static MYRIAD_FUNCTION U of_pair(U own, int distance) {
-#if defined(__CUDA_ARCH__)
-        return __shfl_xor_sync(mask(), static_cast<device_integer<U>>(own), distance, threads);
-#elif defined(MYRIAD_SIMULATED_TEAM) && !defined(__CUDACC__)
+#if MYRIAD_ON_GPU
+        return gpu::shuffle_xor(mask(), static_cast<device_integer<U>>(own), distance, threads);
+#elif defined(MYRIAD_SIMULATED_TEAM) && !MYRIAD_FOR_GPU
         return static_cast<U>(simulated_team::exchange(own, simulated_team::number_of_thread() ^ distance, threads));
 #else
         static_cast<void>(distance);

@@ -11,7 +11,7 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 
 // A call that survives optimisation is a compile-time error. Not under nvcc, but the host compiler sees every model
 // too.
-#if !defined(__CUDACC__)
+#if !MYRIAD_FOR_GPU
 // clang-format off
 [[gnu::error("there is no component of this number: components are counted from 0 and named by the enumerators of "
              "their own enumeration")]] void no_such_component() noexcept;
@@ -21,7 +21,7 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 /// Returns the index. The compiler refuses an index that optimisation shows to be out of range; others are not checked.
 template <int size>
 MYRIAD_FUNCTION int checked_index(int i) {
-#if !defined(__CUDACC__)
+#if !MYRIAD_FOR_GPU
     if (__builtin_constant_p(i) && (i < 0 || i >= size)) no_such_component();
 #endif
     return i;
@@ -30,7 +30,7 @@ MYRIAD_FUNCTION int checked_index(int i) {
 }  // namespace myriad::detail::inline MYRIAD_TARGET
 
 // clang++ does not report where such a call was inlined; this makes it warn where the index is written.
-#if defined(__clang__) && !defined(__CUDACC__)
+#if defined(__clang__) && !MYRIAD_FOR_GPU
 #define MYRIAD_WARN_OF_INDEX(i, size)                                                                             \
     _Pragma("clang diagnostic push") _Pragma("clang diagnostic ignored \"-Wgcc-compat\"")                         \
         __attribute__((diagnose_if((i) < 0 || (i) >= (size), "there is no component of this number", "warning"))) \

@@ -115,6 +115,7 @@ public:
             detector{sides()}.change_sides(follow, detected, fired_.which);
         }
         e_.left = e_.left | masks::all_in(follow);
+        if constexpr (triggers_know_their_function<Model>) triggers_.located = fired_.which;
     }
     /// The lanes in which an event fired in this turn of the loop.
     MYRIAD_FUNCTION mask fired_lanes() const {
@@ -151,6 +152,8 @@ public:
 
     /// The triggers of lane i whose actions are to run.
     MYRIAD_FUNCTION auto& pending_triggers(int i) { return triggers_.pending[i]; }
+    /// The event function that made a pending trigger of lane i fire, or -1.
+    MYRIAD_FUNCTION int function_of(int trigger, int i) const { return triggers_.function[i][trigger]; }
     /// The conditions of the model's triggers.
     MYRIAD_FUNCTION trigger_conditions<Model, Method, S> conditions() { return {sides(), triggers_}; }
 
@@ -158,7 +161,7 @@ private:
     MYRIAD_FUNCTION lane_sides<Model, Method, S> sides() { return {args_, s_, e_, memory_}; }
 
     MYRIAD_FUNCTION trial_ends<Model, S> ends_of(const trial_type& trial, const S& t1, const values& g1) const {
-        trial_ends<Model, S> ends{t1, trial.y, trial.k[0], {}, g1};
+        trial_ends<Model, S> ends{t1, trial.y, trial.slope_start(), {}, g1};
         if constexpr (Method::first_same_as_last) ends.slope_end = trial.slope_end();
         return ends;
     }

@@ -45,24 +45,29 @@ struct stop_driver {
     MYRIAD_FUNCTION mask due() const { return s.running() & (s.data.t == s.stops.next); }
 
     /// Calls `action(kind, number)` for each stop of lane i at its time: the next of each kind in order of the kinds,
-    /// again if more are due, as far as `options::accumulation_limit`.
+    /// again if more are due. Returns `event_accumulation` if there are more than `options::accumulation_limit`
+    /// allows.
     template <class Action>
-    MYRIAD_FUNCTION void act(int i, Action&& action) const {
+    [[nodiscard]] MYRIAD_FUNCTION status act(int i, Action&& action) const {
         const R t = get_lane(s.data.t, i);
+        status ending = status::success;
         for (std::int32_t rounds = 0;; ++rounds) {
             bool acted = false;
             static_for<0, kinds>([&](auto j) MYRIAD_LAMBDA {
                 std::int32_t& next = s.stops.number[i][j];
                 const std::int32_t number = next;
                 if (time_of(detail::inputs_of_lane(s.data, i), j, number) != t) return;
-                if (rounds >= args.accumulation_limit) return s.end_lane(i, status::event_accumulation);
+                if (rounds >= detail::most_actions(args)) {
+                    ending = status::event_accumulation;
+                    return;
+                }
                 next = number < most ? number + 1 : most;
                 s.stops.acted[i][j] = t;
                 action(j, number);
                 acted = true;
             });
             update(i);
-            if (!acted) return;
+            if (!acted) return ending;
         }
     }
 

@@ -16,6 +16,10 @@ struct trigger_state<Model, S, true> {
     mask_set<mask_of<S>, n_event<Model>> seen;              // functions that were positive when it was last looked at
     mask_set<bool, n_trigger<Model>> holds[lanes_of<S>];    // conditions that held then
     mask_set<bool, n_trigger<Model>> pending[lanes_of<S>];  // that have come to hold and whose actions are to be called
+    // The event function whose change of side has made a pending trigger's condition hold; -1: an action has.
+    vec<std::int32_t, triggers_know_their_function<Model> ? n_trigger<Model> : 0> function[lanes_of<S>];
+    // The functions whose crossings were located at this instant.
+    mask_set<mask_of<S>, triggers_know_their_function<Model> ? n_event<Model> : 0> located;
 };
 
 /// The conditions of one lane's triggers.
@@ -31,16 +35,26 @@ struct trigger_conditions {
     /// Starts a phase of lane i. In the first, conditions that count as false before it come to hold, if they do.
     MYRIAD_FUNCTION void begin(int i) const {
         look(i);
+        if constexpr (triggers_know_their_function<Model>) t.located.set_of_lane(i, mask_set<bool, m>{});
         const auto now = conditions(i);
         t.holds[i] = now;
         t.pending[i].clear();
         if (get_lane(sides.s.data.phase, i) > 0) return;
-        for (int j = 0; j < triggers; ++j) t.pending[i].set(j, now[j] && !holds_before_start(j));
+        for (int j = 0; j < triggers; ++j) {
+            t.pending[i].set(j, now[j] && !holds_before_start(j));
+            if constexpr (triggers_know_their_function<Model>) t.function[i][j] = -1;
+        }
     }
     /// Looks at the functions of lane i again.
     MYRIAD_FUNCTION void update(int i) const {
+        const auto before = t.seen.of_lane(i);
         look(i);
         const auto now = conditions(i);
+        if constexpr (triggers_know_their_function<Model>) {
+            for (int j = 0; j < triggers; ++j)
+                if (now[j] && !t.holds[i][j])
+                    t.function[i][j] = turning(i, j, t.located.of_lane(i) & (before ^ t.seen.of_lane(i)));
+        }
         t.pending[i] = t.pending[i] | (now & ~t.holds[i]);
         for (int j = 0; j < triggers; ++j)
             if (!now[j] && !persists(j)) t.pending[i].set(j, false);
@@ -95,6 +109,18 @@ private:
         } else {
             return true;
         }
+    }
+    /// The function among these that has made a condition hold, which would not without it; else any; else -1.
+    MYRIAD_FUNCTION std::int32_t turning(int i, int trigger, const mask_set<bool, m>& turned) const {
+        std::int32_t found = -1;
+        for (int f = 0; f < m; ++f) {
+            if (!turned[f]) continue;
+            auto without = t.seen.of_lane(i);
+            without.set(f, !without[f]);
+            if (!Model::condition(trigger, event_signs<m>(without))) return f;
+            found = f;
+        }
+        return found;
     }
     MYRIAD_FUNCTION mask_set<bool, triggers> conditions(int i) const {
         const event_signs<m> positive(t.seen.of_lane(i));

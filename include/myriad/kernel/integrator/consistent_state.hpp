@@ -115,11 +115,16 @@ MYRIAD_RARE_FUNCTION consistent_state<R, n_state<Model>> solve_algebraic(algebra
     return equations.solve(y);
 }
 
-/// Makes the state of lane i consistent, where it is not to within the tolerances: M y stays as it is. Returns whether
-/// the state has changed. Ends the lane where no such state is found.
+/// Whether a lane's state was made consistent by changing it, and `singular_jacobian` where no such state is found.
+struct state_correction {
+    bool changed;
+    status ending;
+};
+
+/// Makes the state of lane i consistent, where it is not to within the tolerances: M y stays as it is.
 template <class Model, class Method, class S>
-MYRIAD_FUNCTION bool make_state_consistent(const kernel_arguments<Model, real_of<S>>& args,
-                                           integration_state<Model, Method, S>& s, int i) {
+MYRIAD_FUNCTION state_correction make_state_consistent(const kernel_arguments<Model, real_of<S>>& args,
+                                                       integration_state<Model, Method, S>& s, int i) {
     using R = real_of<S>;
     constexpr int n = n_state<Model>;
     const vec<R, n> y = get_lanes<R>(s.data.y, i);
@@ -129,9 +134,8 @@ MYRIAD_FUNCTION bool make_state_consistent(const kernel_arguments<Model, real_of
             max(detail::absolute_tolerance_of(args, c), detail::relative_tolerance_of(args, c) * abs(y[c]));
     const auto result = detail::solve_algebraic(equations, y);
     set_count(s.extra_evaluations, i, get_lane(s.extra_evaluations, i) + static_cast<real_of<S>>(result.evaluations));
-    if (!result.found) s.end_lane(i, status::singular_jacobian);
     if (result.changed) set_lanes(s.data.y, i, result.y);
-    return result.changed;
+    return {result.changed, result.found ? status::success : status::singular_jacobian};
 }
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Runs of fixed steps without events, hooks, samples or error estimates.
+// Runs of fixed steps without events, hooks, observers or error estimates.
 #pragma once
 
 #include "myriad/kernel/integrator/phase_watchdog.hpp"
+#include "myriad/kernel/output/observers.hpp"
 #include "myriad/kernel/stepper/step.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-template <class Model, class Method>
+template <class Model, class Method, class S>
 inline constexpr bool runs_freely = !is_adaptive<Method> && !has_events<Model> && !has_after_step<Model> &&
-                                    !samples_trajectory<Method> && !has_summaries<Model> && !Method::first_same_as_last;
+                                    !observers<Model, Method, S>::any_watches && !Method::first_same_as_last;
 
 template <class Model, class Method, class S>
 struct free_run {
@@ -23,9 +24,9 @@ struct free_run {
 
     /// Takes steps up to the first lane's last step, in registers and with one check per block. A value that is not
     /// finite stays so: a block that ends with one is undone and halved, and the ordinary step that follows finds the
-    /// lane at fault.
+    /// lane at fault. Returns `interrupted` if the source gives up.
     template <class Source>
-    MYRIAD_FUNCTION void take_steps(Source& source) {
+    [[nodiscard]] MYRIAD_FUNCTION status take_steps(Source& source) {
         constexpr iteration_number worthwhile = 4, longest_block = 128, asks_every = 1 << 14;
         // Not the last one, after which the check is due.
         iteration_number run = phase_watchdog<Model, Method, S>{args, s}.iterations_left() - 1;
@@ -35,10 +36,11 @@ struct free_run {
             run = left < run ? left : run;
             lane_step = get_lane(s.steps.step, i);
         });
-        if (run < worthwhile) return;
+        if (run < worthwhile) return status::success;
         // One step size for all lanes takes one register; lanes that differ in direction take ordinary steps.
         const S step = S(lane_step), base = s.steps.base;
-        if (any(s.running() & (s.steps.step != step))) return;
+        if (any(s.running() & (s.steps.step != step))) return status::success;
+        status ending = status::success;
         const inputs<Model, S> p = s.data;
         vec<S, n> y = s.data.y;
         count done = s.steps.done;
@@ -47,7 +49,7 @@ struct free_run {
             if constexpr (!is_pack<S>) {  // which has no other check before the end
                 if (MYRIAD_UNLIKELY(taken % asks_every == 0) &&
                     phase_watchdog<Model, Method, S>{args, s}.gives_up(source, taken)) {
-                    s.end_lane(0, status::interrupted);
+                    ending = status::interrupted;
                     break;
                 }
             }
@@ -57,7 +59,7 @@ struct free_run {
             for (iteration_number i = 0; i < block; ++i) {
                 trial_step<Method, S, n> trial;
                 const S t = fma(S(done + count(static_cast<lane_of<count>>(i))), step, base);
-                trial.k[0] = detail::evaluate_rhs<Model>(t, now, p);
+                trial.slope_start() = detail::evaluate_rhs<Model>(t, now, p);
                 detail::take_trial_step<Method, Model>(t, step, t + step, now, p, trial);
                 now = trial.y;
             }
@@ -73,6 +75,7 @@ struct free_run {
         s.data.y = y;
         fixed_stepping<Model, Method, S>{args, s}.count_steps(done - s.steps.done);
         s.iteration += taken;
+        return ending;
     }
 };
 

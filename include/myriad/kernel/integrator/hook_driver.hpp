@@ -51,7 +51,7 @@ struct hook_driver {
             changed = accepted & differs(before, s.data);
         }
         // The slope at the end of the step may be known already, as the first of the next.
-        if constexpr (Method::first_same_as_last || has_events<Model> || samples_trajectory<Method>) {
+        if constexpr (slope_cache<Model, Method, S>::keeps_start || has_events<Model>) {
             if (any(changed)) {
                 check_finite(changed, before.y);
                 make_consistent(changed);
@@ -63,8 +63,8 @@ struct hook_driver {
         }
     }
 
-    /// Handles lanes in which a summary has changed an accessory that rhs or events may read.
-    MYRIAD_FUNCTION void follow_summaries(const mask& changed) {
+    /// Handles lanes in which an observer has changed an accessory that rhs or events may read.
+    MYRIAD_FUNCTION void follow_observers(const mask& changed) {
         if (any(changed)) follow_up(changed, s.data);
     }
 
@@ -112,7 +112,7 @@ struct hook_driver {
                 set_lane(goes_on, i, acted || events.conditions().settle(i));
             });
             if (!any(goes_on)) return;
-            if (rounds >= args.accumulation_limit) return s.end_lanes(goes_on, status::event_accumulation);
+            if (rounds >= detail::most_actions(args)) return s.end_lanes(goes_on, status::event_accumulation);
         }
     }
 
@@ -123,17 +123,19 @@ struct hook_driver {
         if (!MYRIAD_UNLIKELY(any(due))) return;
         if constexpr (has_triggers<Model>) {
             for_each_lane(due, [&](int i) MYRIAD_LAMBDA {
-                stops.act(i, [&](auto j, std::int32_t number) MYRIAD_LAMBDA { act_on_stop(i, j, number); });
+                s.end_lane(i,
+                           stops.act(i, [&](auto j, std::int32_t number) MYRIAD_LAMBDA { act_on_stop(i, j, number); }));
                 lay_steps(i);
             });
             return;
         }
         const lane_data<Model, S> before = kept();
         for_each_lane(due, [&](int i) MYRIAD_LAMBDA {
-            stops.act(i, [&](auto j, std::int32_t number) MYRIAD_LAMBDA {
+            const status ending = stops.act(i, [&](auto j, std::int32_t number) MYRIAD_LAMBDA {
                 if constexpr (has_after_stop<Model>)
                     run_hook(i, [&](auto& lane) MYRIAD_LAMBDA { return Model::after_stop(j, number, lane); });
             });
+            s.end_lane(i, ending);
             lay_steps(i);
         });
         follow_action(due & differs(before, s.data), before);
@@ -174,7 +176,7 @@ private:
         auto& pending = events.pending_triggers(i);
         bool acted = false;
         for (std::int32_t actions = 0; pending.any_of(); ++actions) {
-            if (actions >= args.accumulation_limit) {
+            if (actions >= detail::most_actions(args)) {
                 s.end_lane(i, status::event_accumulation);
                 pending.clear();
                 break;
@@ -182,7 +184,13 @@ private:
             int next = triggers - 1;
             for (int j = triggers - 2; j >= 0; --j) next = pending[j] ? j : next;
             pending.set(next, false);
-            act_and_look(i, [&](auto& lane) MYRIAD_LAMBDA { return Model::after_trigger(next, lane); });
+            act_and_look(i, [&](auto& lane) MYRIAD_LAMBDA {
+                if constexpr (triggers_know_their_function<Model>) {
+                    return Model::after_trigger_by(events.function_of(next, i), next, lane);
+                } else {
+                    return Model::after_trigger(next, lane);
+                }
+            });
             acted = true;
         }
         return acted;
@@ -244,17 +252,12 @@ private:
             }
             return detail::action_of([&]() MYRIAD_LAMBDA { return hook(lane); });
         });
-        if (get_lane(s.data.h_next, i) != h_next) s.take_step_size(args, i, h_next);
+        if (get_lane(s.data.h_next, i) != h_next) s.end_lane(i, s.take_step_size(args, i, h_next));
         if constexpr (writes_time_domain<Model>) {
             if (get_lane(s.data.t_end, i) != t_end) retarget(i);
         }
         if constexpr (has_stops<Model>) update_stops(i);
-        if (wanted == action::proceed) return;
-        if constexpr (has_stops<Model>) {
-            if (wanted == action::overflow) return s.end_lane(i, status::queue_overflow);
-        }
-        s.end_lane(i, status::stopped_by_user);
-        if (wanted == action::end_instance) s.instance_over[i] = true;
+        s.carry_out(i, wanted);
     }
 
     /// A hook moved the end of the phase: the phase continues to it, backwards if need be, or ends if it is there.
@@ -287,8 +290,9 @@ private:
         detail::for_each_member<Model>(take, s.data, after, before);
         const mask rescaled = lanes & differs_in_bits(after.h_next, before.h_next);
         if (any(rescaled)) {
-            for_each_lane(rescaled,
-                          [&](int i) MYRIAD_LAMBDA { s.take_step_size(args, i, get_lane(before.h_next, i)); });
+            for_each_lane(rescaled, [&](int i) MYRIAD_LAMBDA {
+                s.end_lane(i, s.take_step_size(args, i, get_lane(before.h_next, i)));
+            });
         }
     }
 
@@ -315,7 +319,9 @@ private:
     /// Algebraic states follow what a hook has changed in these lanes.
     MYRIAD_FUNCTION void make_consistent([[maybe_unused]] const mask& changed) {
         if constexpr (n_algebraic < Model >> 0) {
-            for_each_lane(changed & !s.ended, [&](int i) MYRIAD_LAMBDA { detail::make_state_consistent(args, s, i); });
+            for_each_lane(changed & !s.ended, [&](int i) MYRIAD_LAMBDA {
+                s.end_lane(i, detail::make_state_consistent(args, s, i).ending);
+            });
         }
     }
 

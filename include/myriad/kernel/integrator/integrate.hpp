@@ -14,11 +14,10 @@
 #include "myriad/kernel/integrator/phase.hpp"
 #include "myriad/kernel/integrator/phase_watchdog.hpp"
 #include "myriad/kernel/integrator/warp_aggregation.hpp"
-#include "myriad/kernel/output/sampler.hpp"
-#include "myriad/kernel/output/summariser.hpp"
+#include "myriad/kernel/output/observers.hpp"
 #include "myriad/kernel/state/integration_state.hpp"
 #include "myriad/kernel/stepper/component_loop.hpp"
-#include "myriad/kernel/stepper/step.hpp"
+#include "myriad/kernel/stepper/stepper.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
@@ -28,16 +27,16 @@ struct integrator {
     using mask = mask_of<S>;
     static constexpr int n = n_state<Model>;
     static constexpr int m = n_event<Model>;
-    static constexpr bool samples = samples_trajectory<Method>;
     using watchdog_type = phase_watchdog<Model, Method, S>;
     using trial_type = trial_step<Method, S, n>;
     using stepping_type = stepping<Model, Method, S>;
     using event_driver_type = event_driver<Model, Method, S>;
     using detection_type = event_detection<S, m>;
+    using observers_type = observers<Model, Method, S>;
 
     const kernel_arguments<Model, R>& args;
     integration_state<Model, Method, S> s;
-    sample_state<Method, S> o;
+    typename observers_type::memories observed;
     event_memories<Model, R, lanes_of<S>>* memory;
 
     template <class Source>
@@ -50,7 +49,8 @@ struct integrator {
             if constexpr (has_triggers<Model>) {
                 if (any(s.ended)) continue;  // by an action before the first step
             }
-            if constexpr (runs_freely<Model, Method>) free_run<Model, Method, S>{args, s}.take_steps(source);
+            if constexpr (runs_freely<Model, Method, S>)
+                s.end_lane(0, free_run<Model, Method, S>{args, s}.take_steps(source));
             trial_storage<Method, Model, S> storage;
             trial_type& trial = storage.trial();
             propose_step(events);
@@ -66,17 +66,14 @@ struct integrator {
             // A single lane has no branch here: in every step it would cost more than this addition.
             s.rejected = count_where(s.running() & !accepted, s.rejected);
             if constexpr (has_events<Model>) events.locate(trial, end_time(), detected, accepted);
-            if constexpr (samples)
-                sampler<Model, Method, S>{args, s, o}.save(trial, end_time(), accepted, events.fired_lanes());
-            mask summarised;
-            if constexpr (has_summaries<Model>)
-                summarised = summariser<Model, Method, S>{s}.summarise(trial, end_time(), accepted);
+            mask changed;
+            if constexpr (observers_type::any_watches) changed = observe(trial, accepted, events);
             if constexpr (!is_pack<S>) {
                 if (!accepted && !events.fired_lanes()) continue;
             }
             commit(trial, accepted, events);
             hook_driver<Model, Method, S> hooks{args, s, events};
-            if constexpr (sees_summaries<Model>) hooks.follow_summaries(summarised);
+            if constexpr (observers_type::change_inputs) hooks.follow_observers(changed);
             if constexpr (has_after_step<Model>) hooks.after_step(accepted);
             if constexpr (has_events<Model>) hooks.act_on_events();
             if constexpr (has_triggers<Model>) {
@@ -86,7 +83,7 @@ struct integrator {
             }
         }
         if constexpr (requires { source.gives_only_one(); })
-            phase_driver<Model, Method, S>{args, s, events, o}.finish(0);
+            phase_driver<Model, Method, S>{args, s, events, observed}.finish(0);
     }
 
     /// An empty pack: every lane needs an instance.
@@ -105,8 +102,10 @@ struct integrator {
     MYRIAD_FUNCTION bool fill_lanes(Source& source, event_driver_type& events) {
         watchdog_type watchdog{args, s};
         if (is_pack<S> || !any(s.ended)) {
-            watchdog.check();
-            if (watchdog.gives_up(source)) watchdog.interrupt();
+            for_each_lane(s.running() & !s.ended, [&](int i) MYRIAD_LAMBDA {
+                watchdog.check(i, [&](status why) MYRIAD_LAMBDA { s.end_lane(i, why); });
+            });
+            if (watchdog.gives_up(source)) s.end_lanes(s.running() & !s.ended, status::interrupted);
         }
         if (!any(s.ended)) {
             watchdog.schedule();
@@ -114,12 +113,22 @@ struct integrator {
         }
         mask begun = mask(false);
         for_each_lane(s.ended, [&](int i) MYRIAD_LAMBDA {
-            set_lane(begun, i, phase_driver<Model, Method, S>{args, s, events, o}.advance(i, source));
+            set_lane(begun, i, phase_driver<Model, Method, S>{args, s, events, observed}.advance(i, source));
         });
         s.ended = mask(false);
         if constexpr (has_triggers<Model>) {
             events.begin(begun);
+            const vec<S, n> before = s.data.y;
             hook_driver<Model, Method, S>{args, s, events}.begin_triggers(begun);
+            if constexpr (sampler<Model, Method, S>::watches) {
+                mask acted = mask(false);
+                MYRIAD_UNROLL
+                for (int c = 0; c < n; ++c) acted = acted | differs_in_bits(s.data.y[c], before[c]);
+                for_each_lane(begun & acted, [&](int i) MYRIAD_LAMBDA {
+                    if (get_lane(s.data.phase, i) > 0) return;
+                    sampler<Model, Method, S>{args, s, observed}.begin_again(i);
+                });
+            }
         }
         watchdog.schedule();
         if constexpr (is_adaptive<Method>) {
@@ -138,7 +147,7 @@ struct integrator {
     }
 
     MYRIAD_FUNCTION void take_step(trial_type& trial) {
-        detail::copy_components(trial.k[0], s.slopes.first_stage(s.now(), s.data));
+        detail::copy_components(trial.slope_start(), s.slopes.first_stage(s.now(), s.data));
         detail::take_trial_step<Method, Model>(s.now(), s.h, end_time(), s.data.y, s.data, trial);
     }
 
@@ -172,6 +181,13 @@ struct integrator {
         return decided;
     }
 
+    /// Shows the accepted trials to the observers. Returns the lanes in which these have changed inputs.
+    MYRIAD_FUNCTION mask observe(const trial_type& trial, const mask& accepted, const event_driver_type& events) {
+        const S t1 = end_time();
+        const mask at_event = events.fired_lanes();
+        return observers_type{args, s, observed}.see({s, trial, t1, accepted, at_event});
+    }
+
     /// Commits the new state of the accepted lanes.
     MYRIAD_FUNCTION void commit(const trial_type& trial, const mask& accepted, const event_driver_type& events) {
         if constexpr (!is_pack<S>) {
@@ -180,7 +196,7 @@ struct integrator {
         detail::each_component<Method, n>(
             [&](int c) MYRIAD_LAMBDA { s.data.y[c] = select(accepted, trial.y[c], s.data.y[c]); });
         if constexpr (shows_step) s.data.h = select(accepted, s.h, s.data.h);
-        stepping_type{args, s}.advance(accepted, end_time(), events.fired_lanes());
+        s.ended = s.ended | stepping_type{args, s}.advance(accepted, end_time(), events.fired_lanes());
         s.slopes.accept(accepted, trial);
     }
 
@@ -202,6 +218,7 @@ template <class Model, class Method, class S, class Source>
 MYRIAD_FUNCTION std::int64_t integrate(const kernel_arguments<Model, real_of<S>>& args,
                                        const shared_parameters<real_of<S>>& shared, Source& source) {
     static_assert(hooks_fit<Model, real_of<S>>);
+    static_assert(stepper<Method, Model, S>);
     event_memories<Model, real_of<S>, lanes_of<S>> memory;  // outside the loop's own state, which is in registers
     integrator<Model, Method, S> loop{args, {}, {}, &memory};
     loop.run(source, shared);

@@ -8,8 +8,7 @@
 #include "myriad/kernel/event/event_driver.hpp"
 #include "myriad/kernel/event/stop_driver.hpp"
 #include "myriad/kernel/integrator/consistent_state.hpp"
-#include "myriad/kernel/output/sampler.hpp"
-#include "myriad/kernel/output/summariser.hpp"
+#include "myriad/kernel/output/observers.hpp"
 #include "myriad/kernel/state/integration_state.hpp"
 #include "myriad/kernel/stepper/component_loop.hpp"
 
@@ -26,7 +25,7 @@ struct phase_driver {
     const arguments& args;
     integration_state<Model, Method, S>& s;
     event_driver<Model, Method, S>& events;
-    sample_state<Method, S>& o;
+    typename observers<Model, Method, S>::memories& observed;
 
     /// Ends the phase of lane i, if it holds an instance, and starts its next phase or the next instance that needs
     /// work. Returns false if there is none: the lane stays empty.
@@ -211,7 +210,7 @@ private:
         }
         const R t = get_lane(s.data.t, i);
         args.t[index] = t;
-        if constexpr (has_summaries<Model>) summariser<Model, Method, S>{s}.begin(i);
+        observers<Model, Method, S>{args, s, observed}.begin(i);  // stop times may read what they write
         if constexpr (has_stops<Model>) {
             const stop_driver<Model, Method, S> stops{args, s};
             if (has_initialise<Model> && carry_on) {
@@ -224,8 +223,6 @@ private:
         if constexpr (m > 0) {
             if (phase == 0) events.reset(i);
         }
-        if constexpr (samples_trajectory<Method>)
-            sampler<Model, Method, S>{args, s, o}.begin(i, args.phases - s.phases_left[i]);
         set_lane(s.active, i, true);
         s.slopes.reset(i);
         s.instance_over[i] = false;
@@ -244,17 +241,14 @@ private:
         const stop_driver<Model, Method, S> stops{args, s};
         const R t = get_lane(s.data.t, i);
         bool acted = false;
-        stops.act(i, [&](auto j, std::int32_t number) MYRIAD_LAMBDA {
+        const status ending = stops.act(i, [&](auto j, std::int32_t number) MYRIAD_LAMBDA {
             acted = true;
             if constexpr (has_after_stop<Model>) {
-                const action wanted =
-                    place(i, [&](auto& lane) MYRIAD_LAMBDA { return Model::after_stop(j, number, lane); });
-                if (wanted != action::proceed)
-                    s.end_lane(i, wanted == action::overflow ? status::queue_overflow : status::stopped_by_user);
-                if (wanted == action::end_instance) s.instance_over[i] = true;
+                s.carry_out(i, place(i, [&](auto& lane) MYRIAD_LAMBDA { return Model::after_stop(j, number, lane); }));
                 stops.update(i);
             }
         });
+        s.end_lane(i, ending);
         if (!acted) return;
         if constexpr (n_algebraic < Model >> 0) make_consistent(i);
         stepping_type{args, s}.begin(i, t);
@@ -263,9 +257,10 @@ private:
     /// after these hooks.
     MYRIAD_FUNCTION void make_consistent(int i) {
         if (s.ending[i] != status::success) return;
-        [[maybe_unused]] const bool changed = detail::make_state_consistent(args, s, i);
+        const state_correction made = detail::make_state_consistent(args, s, i);
+        s.end_lane(i, made.ending);
         if constexpr (m > 0) {
-            if (changed) events.reset(i);
+            if (made.changed) events.reset(i);
         }
     }
 

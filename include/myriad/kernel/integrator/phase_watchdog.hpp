@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Ends phases that would never end by themselves. Each is checked at intervals, so that a step costs one comparison.
+// Finds phases that would never end by themselves. Each is checked at intervals, so that a step costs one comparison.
 #pragma once
 
 #include <cstdint>
@@ -29,20 +29,18 @@ struct phase_watchdog {
             return s.iteration % check_interval == 0;  // at zero, the limit, too
         }
     }
-    /// Ends phases that have reached the limit of trial steps, and those that stagnate.
-    MYRIAD_FUNCTION void check() {
-        for_each_lane(s.running() & !s.ended, [&](int i) MYRIAD_LAMBDA {
-            const auto* arguments = &args;
-            MYRIAD_OPTIMISATION_BARRIER(arguments);  // else the values it points to occupy registers through the loop
-            const iteration_number iterations = s.iterations_of(*arguments, i),
-                                   left = arguments->max_steps - iterations;
-            if (left <= 0) s.end_lane(i, status::max_steps);
-            if constexpr (stagnation_interval > 0) {
-                if (iterations == 0 || left % stagnation_interval != 0) return;
-                const bool stagnates = stepping_type{*arguments, s}.stagnates(i);
-                if (stagnates && iterations >= stagnation_interval) s.end_lane(i, status::not_finite);
-            }
-        });
+    /// Calls `end(why)` if the phase of lane i has reached the limit of trial steps or stagnates.
+    template <class End>
+    MYRIAD_FUNCTION void check(int i, End&& end) {
+        const auto* arguments = &args;
+        MYRIAD_OPTIMISATION_BARRIER(arguments);  // else the values it points to occupy registers through the loop
+        const iteration_number iterations = s.iterations_of(*arguments, i), left = arguments->max_steps - iterations;
+        if (left <= 0) end(status::max_steps);
+        if constexpr (stagnation_interval > 0) {
+            if (iterations == 0 || left % stagnation_interval != 0) return;
+            const bool stagnates = stepping_type{*arguments, s}.stagnates(i);
+            if (stagnates && iterations >= stagnation_interval) end(status::not_finite);
+        }
     }
     /// Whether the host asks for all instances to end as they are, after so many iterations more than those counted.
     template <class Source>
@@ -54,10 +52,6 @@ struct phase_watchdog {
         } else {
             return false;
         }
-    }
-    /// Ends all phases, and with them the instances.
-    MYRIAD_FUNCTION void interrupt() {
-        for_each_lane(s.running() & !s.ended, [&](int i) MYRIAD_LAMBDA { s.end_lane(i, status::interrupted); });
     }
     /// Sets when a pack checks next: when the first of its phases is due. A single instance needs no such counter.
     MYRIAD_FUNCTION void schedule() {

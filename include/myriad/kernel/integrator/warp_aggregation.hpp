@@ -18,11 +18,12 @@ inline constexpr int aggregated_share = 4, longest_wait = 16;
 /// called by all running threads of a warp, with `cannot_wait` in those that must not repeat this turn. Without a GPU
 /// no one waits, but in tests of what waiting must not change.
 MYRIAD_FUNCTION bool waits_for_warp(bool wants, bool cannot_wait, std::int32_t& waited) {
-#if defined(__CUDA_ARCH__)
-    const unsigned running = __activemask(), wanting = __ballot_sync(running, wants);
+#if MYRIAD_ON_GPU
+    const gpu::lane_mask running = gpu::running_lanes(), wanting = gpu::ballot(running, wants);
     if (!wants) return false;
-    const bool goes = cannot_wait || __popc(wanting) * aggregated_share >= __popc(running) || waited >= longest_wait;
-    const bool waits = !__any_sync(wanting, goes);
+    const bool goes =
+        cannot_wait || gpu::count(wanting) * aggregated_share >= gpu::count(running) || waited >= longest_wait;
+    const bool waits = !gpu::any(wanting, goes);
 #elif defined(MYRIAD_SIMULATED_WARP)
     const bool waits = wants && !cannot_wait && waited % 4 != 3;
 #else

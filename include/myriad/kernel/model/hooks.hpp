@@ -183,6 +183,13 @@ constexpr bool hooks_may_stop() {
     return false;
 }
 
+/// Whether a model's triggers are told which event function has made them fire, by
+/// `after_trigger_by(int function, int trigger, auto& lane)` in the place of after_trigger; -1 where an action has.
+template <class Model>
+inline constexpr bool triggers_know_their_function = requires {
+    requires Model::triggers_know_their_function;
+};
+
 /// Calls a hook that returns an action or nothing.
 template <class Call>
 MYRIAD_FUNCTION action action_of(Call&& call) {

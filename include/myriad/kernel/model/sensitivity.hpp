@@ -84,6 +84,13 @@ struct component_directions {
         }
     }
 
+    /// How much later neighbouring solutions reach the time of the last action, if it was now.
+    template <class R>
+    MYRIAD_FUNCTION static vec<R, count> delays_of_action(const auto& wrapped) {
+        if (wrapped.t != wrapped.accessory[places::event_time]) return {};
+        return detail::part<count>(wrapped.accessory, places::time);
+    }
+
     /// An action after an event, by `cross`, which returns false if it made something jump that has no derivative.
     /// Keeps the time and its derivatives, as the phase may end here. What an action sets has no derivative if the time
     /// of the event has none.

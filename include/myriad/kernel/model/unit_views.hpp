@@ -19,7 +19,7 @@ namespace myriad::detail {
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-#if !defined(__CUDACC__)
+#if !MYRIAD_FOR_GPU
 // clang-format off
 [[gnu::error("there is no unit of this number: units are counted from 0 to one less than their number")]]
 void no_such_unit() noexcept;
@@ -30,7 +30,7 @@ void no_such_unit() noexcept;
 /// NDEBUG check all others, on the CPU.
 template <int units>
 MYRIAD_FUNCTION int checked_unit(int unit) {
-#if !defined(__CUDACC__)
+#if !MYRIAD_FOR_GPU
     if (__builtin_constant_p(unit) && (unit < 0 || unit >= units)) no_such_unit();
 #if !defined(NDEBUG)
     if (unit < 0 || unit >= units) refuse_unit(unit, units);

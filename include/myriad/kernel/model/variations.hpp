@@ -83,6 +83,24 @@ protected:
         return Model::template rhs<R>(wrapped.t, part<n>(wrapped.y), detail::inputs_in<Model>(wrapped));
     }
 
+    /// How much later neighbouring solutions reach the surface of an event.
+    template <class R>
+    MYRIAD_FUNCTION static vec<R, count> delays(int event, const auto& wrapped) {
+        const auto derivative = [&](const vec<R, n>& direction, R dt, const auto& p) MYRIAD_LAMBDA {
+            const auto g =
+                Model::template events<dual<R>>(dual<R>(wrapped.t, dt), along(part<n>(wrapped.y), direction), p);
+            return g[event].derivative;
+        };
+        const R approach = derivative(slope<R>(wrapped), R(1), detail::inputs_in<Model>(wrapped));
+        vec<R, count> dt;
+        static_for<0, count>([&](auto i) MYRIAD_LAMBDA {
+            dt[i] = -derivative(part<n>(wrapped.y, n + i * n), R(0),
+                                detail::inputs_along<Model, Directions, i.value, R>(wrapped)) /
+                    approach;
+        });
+        return dt;
+    }
+
     /// Calls an action of the model's at a time that is later by dt in neighbouring solutions. A dt that is not finite
     /// does not exist, as where the solution only touches a surface; this is harmless if nothing jumps. Returns false
     /// if something does.
@@ -119,21 +137,8 @@ requires(has_after_event<Model> ||
          (has_events<Model> && Directions::keeps_times)) struct after_event_layer<Model, Directions>
     : crossing_layer<Model, Directions> {
     MYRIAD_FUNCTION static action after_event(int event, auto& wrapped) {
-        constexpr int n = n_state<Model>, count = Directions::count;
         using R = std::remove_cvref_t<decltype(wrapped.t)>;
-        const auto derivative = [&](const vec<R, n>& direction, R dt, const auto& p) MYRIAD_LAMBDA {
-            const auto g =
-                Model::template events<dual<R>>(dual<R>(wrapped.t, dt), along(part<n>(wrapped.y), direction), p);
-            return g[event].derivative;
-        };
-        const R approach = derivative(crossing_layer<Model, Directions>::template slope<R>(wrapped), R(1),
-                                      detail::inputs_in<Model>(wrapped));
-        vec<R, count> dt;
-        static_for<0, count>([&](auto i) MYRIAD_LAMBDA {
-            dt[i] = -derivative(part<n>(wrapped.y, n + i * n), R(0),
-                                detail::inputs_along<Model, Directions, i.value, R>(wrapped)) /
-                    approach;
-        });
+        const auto dt = crossing_layer<Model, Directions>::template delays<R>(event, wrapped);
         action wanted = action::proceed;
         const auto act = [&](auto& own) MYRIAD_LAMBDA {
             if constexpr (has_after_event<Model>)
@@ -150,12 +155,36 @@ requires(has_after_event<Model> ||
     }
 };
 
+/// A trigger fires where neighbouring solutions reach the surface of the function that has made its condition hold, or
+/// at the time of the action that has.
+template <class Model, class Directions>
+struct after_trigger_layer : after_event_layer<Model, Directions> {};
+template <class Model, class Directions>
+requires has_triggers<Model>
+struct after_trigger_layer<Model, Directions> : after_event_layer<Model, Directions> {
+    static_assert(Directions::keeps_times, "models with triggers have no tangents");
+    static constexpr bool triggers_know_their_function = true;
+    MYRIAD_FUNCTION static action after_trigger_by(int function, int trigger, auto& wrapped) {
+        using R = std::remove_cvref_t<decltype(wrapped.t)>;
+        using crossing = crossing_layer<Model, Directions>;
+        const vec<R, Directions::count> dt = function >= 0 ? crossing::template delays<R>(function, wrapped)
+                                                           : Directions::template delays_of_action<R>(wrapped);
+        action wanted = action::proceed;
+        Directions::cross_at_event(wrapped, dt, [&]() MYRIAD_LAMBDA {
+            return crossing::template cross<R>(wrapped, dt, [&](auto& own) MYRIAD_LAMBDA {
+                wanted = detail::action_of([&]() MYRIAD_LAMBDA { return Model::after_trigger(trigger, own); });
+            });
+        });
+        return wanted;
+    }
+};
+
 /// Stop times of a neighbouring solution are the same, unless they depend on inputs that differ.
 template <class Model, class Directions>
-struct after_stop_layer : after_event_layer<Model, Directions> {};
+struct after_stop_layer : after_trigger_layer<Model, Directions> {};
 template <class Model, class Directions>
 requires has_after_stop<Model>
-struct after_stop_layer<Model, Directions> : after_event_layer<Model, Directions> {
+struct after_stop_layer<Model, Directions> : after_trigger_layer<Model, Directions> {
     MYRIAD_FUNCTION static action after_stop(int stop, int number, auto& wrapped) {
         action wanted = action::proceed;
         const auto act = [&](auto& own) MYRIAD_LAMBDA {
@@ -189,8 +218,6 @@ namespace myriad::detail {
 template <class Model, class Directions>
 struct with_variations : variation_layers::after_stop_layer<Model, Directions> {
     static_assert(check_model<Model>());
-    static_assert(!has_triggers<Model>,
-                  "models with triggers have no tangents and no sensitivities, which pass the surface of one event");
 
     using original = Model;                                    ///< the model alone
     static constexpr int n_original = detail::n_state<Model>;  ///< number of its states

@@ -7,30 +7,30 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// The sampler's state between steps. Empty for a method that does not sample.
-template <class Method, class S, bool samples = samples_trajectory<Method>>
-struct sample_state {};
-template <class Method, class S>
-struct sample_state<Method, S, true> {
-    S next;                           // time of the next sample; infinity: none
-    S last;                           // when sampling by steps: time of the last sample
-    S begin, end;                     // the domain of evenly spaced samples; a hook may move the end of the phase
-    std::int32_t index[lanes_of<S>];  // index of the next given time in this phase
-    std::int32_t steps[lanes_of<S>];  // accepted steps since the last sample; -1: this phase is not sampled
-};
-
+/// An observer: see observers.hpp.
 template <class Model, class Method, class S>
 struct sampler {
     using R = real_of<S>;
     using mask = mask_of<S>;
+    using step_type = accepted_step<Model, Method, S>;
     static constexpr int n = n_state<Model>;
+    static constexpr bool watches = samples_trajectory<Method>;
+    static constexpr bool changes_inputs = false;
+
+    struct memory {
+        S next;                           // time of the next sample; infinity: none
+        S last;                           // when sampling by steps: time of the last sample
+        S begin, end;                     // the domain of evenly spaced samples; a hook may move the end of the phase
+        std::int32_t index[lanes_of<S>];  // index of the next given time in this phase
+        std::int32_t steps[lanes_of<S>];  // accepted steps since the last sample; -1: this phase is not sampled
+    };
 
     const kernel_arguments<Model, R>& args;
     integration_state<Model, Method, S>& s;
-    sample_state<Method, S>& o;
+    memory& o;
 
-    /// Starts lane i's phase, number `phase` of this call, at its current time and state.
-    MYRIAD_FUNCTION void begin(int i, std::int32_t phase) {
+    MYRIAD_FUNCTION void begin(int i) {
+        const std::int32_t phase = args.phases - s.phases_left[i];  // of this call
         const R t = get_lane(s.data.t, i);
         o.index[i] = 0;
         o.steps[i] = -1;
@@ -66,51 +66,55 @@ struct sampler {
         }
     }
 
-    /// Stores the samples within the accepted trial steps, which end at t1, before they are committed. Where a step
-    /// ends at an event, at a stop or at the end of the phase, a sample at the same instant shows the state there,
-    /// before any action.
-    MYRIAD_FUNCTION void save(const trial_step<Method, S, n>& trial, const S& t1, const mask& accepted,
-                              const mask& at_event) {
+    /// Starts phase 0 of lane i again: actions at its start have changed the state.
+    MYRIAD_FUNCTION void begin_again(int i) {
+        if (args.sample.stored == nullptr) return;
+        team_for<Model>::synchronise();
+        if (team_for<Model>::leads()) args.sample.stored[s.instance[i]] = 0;
+        team_for<Model>::synchronise();
+        begin(i);
+    }
+
+    /// Stores the samples within the accepted steps. Where one ends at an event, at a stop or at the end of the phase,
+    /// a sample at the same instant shows the state there, before any action.
+    MYRIAD_FUNCTION void see(const step_type& seen) {
         if (args.sample.stored == nullptr) return;
         if (args.sample.every > 0) {
-            save_steps(trial, t1, accepted);
+            save_steps(seen);
         } else {
+            const S& t1 = seen.t1;
             const S later = select(s.h < S(R(0)), t1 - same_instant(t1), t1 + same_instant(t1));
-            save_times(trial, t1, select(at_event | s.final_step, later, t1), accepted);
+            save_times(seen, select(seen.at_event | s.final_step, later, t1));
         }
     }
 
 private:
-    MYRIAD_FUNCTION void save_steps(const trial_step<Method, S, n>& trial, const S& t1, const mask& accepted) {
-        for_each_lane(accepted, [&](int i) MYRIAD_LAMBDA {
+    MYRIAD_FUNCTION void save_steps(const step_type& seen) {
+        for_each_lane(seen.accepted, [&](int i) MYRIAD_LAMBDA {
             if (o.steps[i] < 0 || ++o.steps[i] < args.sample.every) return;
-            const R t = get_lane(t1, i);
+            const R t = get_lane(seen.t1, i);
             if (abs(t - get_lane(o.last, i)) < args.sample.minimum_spacing) return;
-            store(i, t, get_lanes<R>(trial.y, i));
+            store(i, t, get_lanes<R>(seen.trial.y, i));
             set_lane(o.last, i, t);
             o.steps[i] = 0;
         });
     }
 
-    /// `last` is t1 or, where the step ends there, the last time that is the same instant.
-    MYRIAD_FUNCTION void save_times(const trial_step<Method, S, n>& trial, const S& t1, const S& last,
-                                    const mask& accepted) {
+    /// `last` is the end of the step or, where the phase ends there too, the last time that is the same instant.
+    MYRIAD_FUNCTION void save_times(const step_type& seen, const S& last) {
         const S t0 = s.now();
-        mask due = accepted & falls_between(t0, last);
+        mask due = seen.accepted & falls_between(t0, last);
         if (!any(due)) return;
-        step_data<Method, S, n> step{t0, s.h, s.data.y, trial, s.slopes.end(), {}};
-        if constexpr (Method::first_same_as_last || interpolates_with_slope_end<Method>)
-            detail::ensure_slope_end<Model>(s, step, t1, due);
-        detail::ensure_interpolant<Model>(s, step, due);
+        const step_data<Method, S, n> step = seen.inside(due);
         while (any(due)) {
             const S theta = (o.next - step.t) / step.h;
-            const auto y = sampled_state(step, theta, is_past(o.next, t1));
+            const auto y = sampled_state(step, theta, is_past(o.next, seen.t1));
             for_each_lane(due, [&](int i) MYRIAD_LAMBDA {
                 store_values(i, get_lane(o.next, i), [&](int c) MYRIAD_LAMBDA { return get_lane(y(c), i); });
                 ++o.index[i];
                 set_next(i);
             });
-            due = accepted & falls_between(t0, last);
+            due = seen.accepted & falls_between(t0, last);
         }
     }
 

@@ -33,20 +33,26 @@ struct observed_step {
     }
 };
 
+/// An observer: see observers.hpp.
 template <class Model, class Method, class S>
 struct summariser {
     using R = real_of<S>;
     using mask = mask_of<S>;
     static constexpr int n = n_state<Model>;
     static constexpr int m = n_observed<Model>;
+    static constexpr bool watches = has_summaries<Model>;
+    static constexpr bool changes_inputs = sees_summaries<Model>;
     static constexpr bool integrates = summarises_any<Model, over_phase::integral>;
     using step_type = observed_step<Method, S, n>;
     using values = vec<S, m>;
     using slopes = vec<dual<S>, m>;
 
-    integration_state<Model, Method, S>& s;
+    struct memory {};  // all is in accessories
 
-    /// Starts lane i's phase at its time and state, after `initialise`.
+    const kernel_arguments<Model, R>& args;
+    integration_state<Model, Method, S>& s;
+    memory& own;
+
     MYRIAD_FUNCTION void begin(int i) {
         const lane_data<Model, R> one = detail::extract_lane(s.data, i);
         const inputs<Model, R>& p = one;
@@ -61,15 +67,17 @@ struct summariser {
         team_for<Model>::synchronise();  // stop times may read them
     }
 
-    /// Updates the summaries with the accepted trial steps, which end at t1, before they are committed. Returns the
-    /// lanes in which an accessory has changed.
-    MYRIAD_FUNCTION mask summarise(const trial_step<Method, S, n>& trial, const S& t1, const mask& accepted) {
+    /// Updates the summaries with the accepted steps. Returns the lanes in which an accessory has changed.
+    MYRIAD_FUNCTION mask see(const accepted_step<Model, Method, S>& seen) {
+        const auto& trial = seen.trial;
+        const S& t1 = seen.t1;
+        const mask& accepted = seen.accepted;
         const auto before = s.data.accessory;
         if constexpr (sees_summaries<Model> && team_size < Model >> 1) {
             inputs<Model, S> now = s.data;
             as_part<Model>::template keep_inputs<R>(now);
         }
-        step_type step{{s.now(), s.h, s.data.y, trial, s.slopes.end(), {}}, {}};
+        step_type step{seen.ends(), {}};
         if constexpr (interpolates_with_slope_end<Method> ||
                       (seeks_extrema<Model> && interpolates_between_slopes<Method>))
             detail::ensure_slope_end<Model>(s, step.data, t1, accepted);
@@ -147,7 +155,7 @@ private:
             MYRIAD_UNROLL
             for (int c = 0; c < n; ++c) moving[c] = dual<S>(y[c]);
         } else if constexpr (interpolates_between_slopes<Method>) {
-            const vec<S, n>& slope = end == 0 ? step.data.trial.k[0] : step.data.slope_end;
+            const vec<S, n>& slope = end == 0 ? step.data.trial.slope_start() : step.data.slope_end;
             MYRIAD_UNROLL
             for (int c = 0; c < n; ++c) moving[c] = dual<S>(y[c], step.data.h * slope[c]);
         } else {

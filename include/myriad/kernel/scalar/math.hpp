@@ -21,7 +21,7 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 template <class S>
 concept real_kind = (kind_rank<S> > 0) || std::floating_point<S>;
 
-#if defined(__CUDACC__)
+#if MYRIAD_FOR_GPU
 /// For large angles and those that are not finite: one copy, out of line, as the call is rare and its code long.
 inline __device__ __noinline__ double sin_of_large(double x) { return std::sin(x); }
 inline __device__ __noinline__ double cos_of_large(double x) { return std::cos(x); }
@@ -60,9 +60,9 @@ struct functions<T> {
     static MYRIAD_FUNCTION T copysign(T x, T sign) { return std::copysign(x, sign); }
     static MYRIAD_FUNCTION T fmod(T x, T y) { return std::fmod(x, y); }
     static MYRIAD_FUNCTION bool is_finite(T x) {
-#if defined(__CUDA_ARCH__)
+#if MYRIAD_ON_GPU
         // Tests the exponent, to spare the floating-point pipe.
-        if constexpr (sizeof(T) == sizeof(double)) return (__double2hiint(x) & 0x7ff00000) != 0x7ff00000;
+        if constexpr (sizeof(T) == sizeof(double)) return (gpu::upper_half(x) & 0x7ff00000) != 0x7ff00000;
 #endif
         return std::fabs(x) <= largest;
     }
@@ -70,25 +70,25 @@ struct functions<T> {
     // Operands in the order of the x86 instructions, so that packs and plain reals agree for signed zeros too. On GPUs,
     // CUDA's own functions take one instruction in single precision, but a few more than this in double.
     static MYRIAD_FUNCTION T min(T a, T b) {
-#if defined(__CUDA_ARCH__)
+#if MYRIAD_ON_GPU
         if constexpr (sizeof(T) == sizeof(float)) return std::fmin(a, b);
 #endif
         return b != b || a < b ? a : b;
     }
     static MYRIAD_FUNCTION T max(T a, T b) {
-#if defined(__CUDA_ARCH__)
+#if MYRIAD_ON_GPU
         if constexpr (sizeof(T) == sizeof(float)) return std::fmax(a, b);
 #endif
         return b != b || a > b ? a : b;
     }
 
-#if defined(__CUDA_ARCH__)
+#if MYRIAD_ON_GPU
     // Correctly rounded, like CUDA's own, but shorter: one third-order step from the hardware's 20 bits, and
     // Markstein's correction of the root by its remainder. Numbers whose remainder would underflow are scaled by 2^108.
     static MYRIAD_FUNCTION T sqrt(T x) {
         if constexpr (sizeof(T) == sizeof(double)) {
             constexpr unsigned smallest = 0x03500000, infinite = 0x7ff00000;  // high words
-            const bool ordinary = static_cast<unsigned>(__double2hiint(x)) - smallest < infinite - smallest;
+            const bool ordinary = static_cast<unsigned>(gpu::upper_half(x)) - smallest < infinite - smallest;
             double root = sqrt_of_ordinary(x);
             if (MYRIAD_UNLIKELY(!ordinary)) root = sqrt_of_extreme(x);
             return root;
@@ -97,8 +97,7 @@ struct functions<T> {
         }
     }
     static MYRIAD_FUNCTION double rsqrt_of_ordinary(double x) {
-        double r;
-        asm("rsqrt.approx.ftz.f64 %0, %1;" : "=d"(r) : "d"(x));
+        const double r = gpu::approximate_inverse_root(x);
         const double error = fma(-x * r, r, 1.0);
         return fma(r * error, fma(error, 0.375, 0.5), r);
     }
@@ -132,13 +131,11 @@ struct functions<T> {
     static MYRIAD_FUNCTION T sinpi(T x) { return ::sinpi(x); }
     static MYRIAD_FUNCTION T cospi(T x) { return ::cospi(x); }
     static MYRIAD_FUNCTION T reciprocal(T x) {
-        T r;
+        const T r = gpu::approximate_reciprocal(x);
         if constexpr (sizeof(T) == sizeof(double)) {
-            asm("rcp.approx.ftz.f64 %0, %1;" : "=d"(r) : "d"(x));  // to about 2^-20
             const T error = fma(-x, r, T(1));
             return fma(fma(error, error, error), r, r);
         } else {
-            asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(r) : "f"(x));
             return r;
         }
     }
@@ -146,9 +143,7 @@ struct functions<T> {
         if constexpr (sizeof(T) == sizeof(double)) {
             return rsqrt_of_ordinary(x);
         } else {
-            T r;
-            asm("rsqrt.approx.ftz.f32 %0, %1;" : "=f"(r) : "f"(x));
-            return r;
+            return gpu::approximate_inverse_root(x);
         }
     }
 #else

@@ -92,22 +92,22 @@ template <class S>
 concept is_pack = lanes_of<S> >
 1;
 
-// Constants, since device code may not call the functions behind them.
+// Constants of the real type, since device code may not call the functions behind them, which know no other kind.
 /// Spacing of the numbers next to one.
-template <class R>
-inline constexpr R epsilon_of = std::numeric_limits<R>::epsilon();
+template <class S>
+inline constexpr real_of<S> epsilon_of = std::numeric_limits<real_of<S>>::epsilon();
 /// The largest finite number.
-template <class R>
-inline constexpr R largest_of = std::numeric_limits<R>::max();
+template <class S>
+inline constexpr real_of<S> largest_of = std::numeric_limits<real_of<S>>::max();
 /// The smallest positive normal number.
-template <class R>
-inline constexpr R smallest_normal_of = std::numeric_limits<R>::min();
+template <class S>
+inline constexpr real_of<S> smallest_normal_of = std::numeric_limits<real_of<S>>::min();
 /// Infinity.
-template <class R>
-inline constexpr R infinity_of = std::numeric_limits<R>::infinity();
+template <class S>
+inline constexpr real_of<S> infinity_of = std::numeric_limits<real_of<S>>::infinity();
 /// A quiet NaN.
-template <class R>
-inline constexpr R nan_of = std::numeric_limits<R>::quiet_NaN();
+template <class S>
+inline constexpr real_of<S> nan_of = std::numeric_limits<real_of<S>>::quiet_NaN();
 
 /// a where the mask holds, otherwise b. Both are evaluated. Kinds may be mixed: `select(x > 0.0, x, 0.0)`; with packs
 /// the mask may be a plain bool.

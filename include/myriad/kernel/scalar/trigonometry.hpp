@@ -101,8 +101,8 @@ struct half_wave {
     static MYRIAD_FUNCTION T cos(T x) {
         constexpr T whole = T(0x1p52);
         const T magnitude = std::fabs(x);
-#if defined(__CUDA_ARCH__)
-        const T shifted = __fma_rd(magnitude, half_wave_constant<T>[0], whole);
+#if defined(MYRIAD_GPU_HAS_FMA_ROUNDED_DOWN)
+        const T shifted = gpu::fma_rounded_down(magnitude, half_wave_constant<T>[0], whole);
 #else
         const T shifted = std::floor(magnitude * half_wave_constant<T>[0]) + whole;
 #endif

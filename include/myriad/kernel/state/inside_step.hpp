@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Evaluations beyond its stages that values inside an accepted step take: the slope at its end and the interpolant's
-// own stages, each computed only where unknown, and counted.
+// An accepted step as those see it that watch the solution, and the evaluations beyond its stages that values inside it
+// take: the slope at its end and the interpolant's own stages, each computed only where unknown, and counted.
 #pragma once
 
 #include "myriad/kernel/state/integration_state.hpp"
@@ -30,5 +30,30 @@ MYRIAD_FUNCTION void ensure_interpolant(integration_state<Model, Method, S>& s,
         s.extra_evaluations = count_where(lanes, s.extra_evaluations, extra_stages<Method>);
     }
 }
+
+/// Trial steps that are about to be committed, in the lanes where they were accepted: the state `s` is still that at
+/// their start.
+template <class Model, class Method, class S>
+struct accepted_step {
+    using mask = mask_of<S>;
+    static constexpr int n = n_state<Model>;
+
+    integration_state<Model, Method, S>& s;
+    const trial_step<Method, S, n>& trial;
+    const S& t1;           // where they end
+    const mask& accepted;  // in these lanes; the others do not count
+    const mask& at_event;  // the step ends at an event
+
+    /// Start, length and both states; of slopes, what is known.
+    MYRIAD_FUNCTION step_data<Method, S, n> ends() const { return {s.now(), s.h, s.data.y, trial, s.slopes.end(), {}}; }
+    /// The same with all that `interpolate` takes, in these lanes.
+    MYRIAD_FUNCTION step_data<Method, S, n> inside(const mask& lanes) const {
+        step_data<Method, S, n> step = ends();
+        if constexpr (Method::first_same_as_last || interpolates_with_slope_end<Method>)
+            detail::ensure_slope_end<Model>(s, step, t1, lanes);
+        detail::ensure_interpolant<Model>(s, step, lanes);
+        return step;
+    }
+};
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET

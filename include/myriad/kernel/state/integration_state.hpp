@@ -121,21 +121,40 @@ struct integration_state {
         set_lane(data.h_next, i, copysign(min(max(abs(wanted), args.minimum_step), args.maximum_step), wanted));
     }
 
-    /// Ends the phase of lane i with the given status; an earlier failure stands.
+    // A part of the loop that decides how the phase of a lane ends returns that, and `success` if it goes on; or calls
+    // a function `end` of the loop's, where a value would cost registers in every step. Only the loop, and what calls
+    // hooks one after the other, end phases.
+
+    /// Ends the phase of lane i for a reason other than `success`; an earlier failure stands.
     MYRIAD_FUNCTION void end_lane(int i, myriad::status why) {
+        if (why == myriad::status::success) return;
         if (!is_failure(ending[i])) ending[i] = why;
         set_lane(ended, i, true);
     }
-    /// Ends the phase of every lane of the mask.
+    /// The same for every lane of the mask.
     MYRIAD_FUNCTION void end_lanes(const mask& which, myriad::status why) {
         for_each_lane(which, [&](int i) MYRIAD_LAMBDA { end_lane(i, why); });
     }
+    /// Carries out what a hook of lane i wants.
+    MYRIAD_FUNCTION void carry_out(int i, action wanted) {
+        if (wanted == action::proceed) return;
+        myriad::status why = myriad::status::stopped_by_user;
+        if constexpr (has_stops<Model>) {
+            if (wanted == action::overflow) why = myriad::status::queue_overflow;
+        }
+        end_lane(i, why);
+        if (wanted == action::end_instance) instance_over[i] = true;
+    }
 
-    /// Takes the step size set by a hook. NaN is refused: the lane keeps its old step size and ends.
-    MYRIAD_FUNCTION void take_step_size(const kernel_arguments<Model, R>& args, int i, R before) {
-        if (get_lane(data.h_next, i) == get_lane(data.h_next, i)) return bound_step(args, i);
+    /// Takes the step size set by a hook. NaN is refused, as `not_finite`: the lane keeps its old step size.
+    [[nodiscard]] MYRIAD_FUNCTION myriad::status take_step_size(const kernel_arguments<Model, R>& args, int i,
+                                                                R before) {
+        if (get_lane(data.h_next, i) == get_lane(data.h_next, i)) {
+            bound_step(args, i);
+            return myriad::status::success;
+        }
         set_lane(data.h_next, i, before);
-        end_lane(i, myriad::status::not_finite);
+        return myriad::status::not_finite;
     }
 };
 

@@ -167,6 +167,17 @@ public:
 template <class Model, class R>
 struct kernel_arguments : argument_head<R>, argument_arrays<Model, R> {};
 
+/// How many actions of stops or of triggers at one instant are too many: triggers may put theirs into one queue, and so
+/// each of them counts.
+template <class Model, class R>
+MYRIAD_FUNCTION auto most_actions(const kernel_arguments<Model, R>& args) {
+    if constexpr (has_triggers<Model>) {
+        return std::int64_t(args.accumulation_limit) * n_trigger<Model>;
+    } else {
+        return args.accumulation_limit;
+    }
+}
+
 /// The tolerances of a thread's state. A team has them in shared memory, as each of its threads wants another one.
 template <class Model, class R>
 MYRIAD_FUNCTION R relative_tolerance_of(const kernel_arguments<Model, R>& args, int c) {

@@ -31,6 +31,9 @@ public:
     /// Slopes are kept if the last of a step is the first of the next. Else every trial evaluates its own, a repeated
     /// one too: in a pack or a warp another lane needs it anyway.
     static constexpr bool keeps_start = Method::first_same_as_last || knows_end;
+    /// Within a phase too, the slope at the start may have to be evaluated again.
+    static constexpr bool loses_start = !Method::first_same_as_last || has_after_step<Model> || has_events<Model> ||
+                                        has_stops<Model> || sees_summaries<Model>;
     /// Evaluations of the right-hand side per trial step.
     static constexpr int evaluations_per_trial = keeps_start ? Method::stages - 1 : Method::stages;
 
@@ -98,13 +101,14 @@ public:
     MYRIAD_FUNCTION const state& end() const { return end_; }
     MYRIAD_FUNCTION const state& end(const mask& lanes, const S& t1, const state& y1, const data& at,
                                      count& evaluations) {
-        const mask needed = lanes & !end_known_;
+        mask needed = lanes;
+        if constexpr (knows_end) needed = needed & !end_known_;
         if (any(needed)) {
             const state fresh = detail::evaluate_rhs<Model>(t1, y1, at);
             detail::each_component<Method, n>([&](int c)
                                                   MYRIAD_LAMBDA { end_[c] = select(needed, fresh[c], end_[c]); });
             evaluations = count_where(needed, evaluations);
-            end_known_ = end_known_ | needed;
+            if constexpr (knows_end) end_known_ = end_known_ | needed;
         }
         return end_;
     }
@@ -137,10 +141,6 @@ private:
         evaluations = count_where(needed, evaluations);
         start_known_ = start_known_ | needed;
     }
-
-    /// Within a phase too, the slope at the start may have to be evaluated again.
-    static constexpr bool loses_start = !Method::first_same_as_last || has_after_step<Model> || has_events<Model> ||
-                                        has_stops<Model> || sees_summaries<Model>;
 
     state start_, end_;
     mask start_known_, end_known_;

@@ -143,7 +143,8 @@ MYRIAD_FUNCTION vec<T, n> interpolate(const step_data<Method, S, n>& step, const
             out[c] = step.y[c] + increment;
         }
     } else {
-        out = detail::hermite_interpolation(step.y, step.trial.y, step.trial.k[0], step.slope_end, step.h, theta);
+        out = detail::hermite_interpolation(step.y, step.trial.y, step.trial.slope_start(), step.slope_end, step.h,
+                                            theta);
     }
     return out;
 }

@@ -63,6 +63,8 @@ struct trial_step {
     vec<vec<S, n>, Method::stages> k;
     vec<S, n> y;
 
+    MYRIAD_FUNCTION vec<S, n>& slope_start() { return k[0]; }
+    MYRIAD_FUNCTION const vec<S, n>& slope_start() const { return k[0]; }
     /// For methods whose last stage is the first of the next step.
     MYRIAD_FUNCTION const vec<S, n>& slope_end() const { return k[Method::stages - 1]; }
 };

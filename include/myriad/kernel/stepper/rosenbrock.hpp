@@ -36,6 +36,8 @@ struct trial_step<Method, S, n> {
     vec<S, n> y;
     mask_of<S> singular;
 
+    MYRIAD_FUNCTION vec<S, n>& slope_start() { return k[0]; }
+    MYRIAD_FUNCTION const vec<S, n>& slope_start() const { return k[0]; }
     MYRIAD_FUNCTION const vec<S, n>& slope_end() const { return k[1]; }
 };
 

@@ -8,7 +8,7 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// Steps from (t, y) by h to t1, which is t + h up to rounding; `trial.k[0]`, the slope at the start, must be set.
+/// Steps from (t, y) by h to t1, which is t + h up to rounding; `trial.slope_start()` must be set.
 template <class Method, class Model, class S>
 MYRIAD_FUNCTION void take_trial_step(const S& t, const S& h, const S& t1, const vec<S, n_state<Model>>& y,
                                      const inputs<Model, S>& p, trial_step<Method, S, n_state<Model>>& trial) {

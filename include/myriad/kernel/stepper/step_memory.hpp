@@ -74,7 +74,7 @@ inline constexpr int largest_trial_in_registers = 1600;
 
 template <class Method, class Model, class R>
 constexpr int shared_step_bytes_of() {
-#if defined(__CUDACC__)
+#if MYRIAD_FOR_GPU
     if constexpr (rosenbrock_method<Method>) {
         if constexpr (loops_over_stages<Method, Model, R>) {
             constexpr int in_registers = static_cast<int>(sizeof(R)) * (n_factor_entry<Model> + 3 * n_state<Model>);
@@ -110,7 +110,7 @@ inline constexpr bool shares_factors =
 /// This thread's, the first in the block's shared memory.
 template <class Memory, int bytes_of_thread>
 MYRIAD_FUNCTION Memory& step_memory_of_thread() {
-#if defined(__CUDA_ARCH__)
+#if MYRIAD_ON_GPU
     return *reinterpret_cast<Memory*>(static_cast<char*>(memory_of_block()) + threadIdx.x * bytes_of_thread);
 #else
     return *static_cast<Memory*>(nullptr);  // never called
@@ -131,7 +131,7 @@ struct trial_storage {
     trial_step<Method, S, n_state<Model>> own;
     MYRIAD_FUNCTION trial_step<Method, S, n_state<Model>>& trial() { return own; }
 };
-#if defined(__CUDACC__)
+#if MYRIAD_FOR_GPU
 template <class Method, class Model, class S>
 requires(!rosenbrock_method<Method> && shared_step_bytes<Method, Model, S> > 0) struct trial_storage<Method, Model, S> {
     MYRIAD_FUNCTION trial_step<Method, S, n_state<Model>>& trial() {
@@ -161,7 +161,7 @@ private:
     trial_step<Method, R, n>& trial_;
 };
 
-#if defined(__CUDACC__)
+#if MYRIAD_FOR_GPU
 /// Stages in the shared memory of the block, and factors there or in variables.
 template <class Method, class Model, class R>
 class shared_step {

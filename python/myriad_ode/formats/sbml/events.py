@@ -1,116 +1,59 @@
 # SPDX-License-Identifier: MIT
-"""Events of SBML as events of a model.
+"""Events of SBML as triggers of a model.
 
-A trigger is a condition, and an event of a model a real function that rises through zero: the difference of the two
-sides of a comparison. A trigger becomes true where one of its comparisons does; each is found by itself, so that none
-is missed because another ceases to hold in the same step. What is delayed waits in slots, accessories with the time
-when it is due, and one event finds the next of these times. What happens at one instant, in which order, and what that
-makes happen at once, is worked out in the action (instant.py).
+A trigger of SBML's is one of the library's, and so are its delay, its priority and what it does when its condition
+ceases to hold. What an event gives is stored as the model has it, an amount for a concentration: with the volume at the
+execution, but with values from the time of the trigger. Only those are kept that may change until the execution.
 """
 
 from __future__ import annotations
 
-import functools
-import math
+from dataclasses import dataclass, field
 from typing import Any
 
-from ...models.event import Event, event
-from ...symbolic import expression as ex, symbols as sym
+from ...models.trigger import Trigger, waiting_value
+from ...symbolic import expression as ex
 from ...symbolic.expression import symbols_of
-from ...symbolic.folding import (add, both, choose, compare, constant, divide, either, is_constant, multiply, number,
-                                 opposite, subtract, truth, value_of)
-from .conditions import (any_of, comparisons_alone, comparisons_of, complements, false, function_of, functions_of,
-                         is_for_an_instant, never, true, with_values)
+from ...symbolic.folding import divide, is_constant, multiply, number, truth, value_of
 from .document import named
-from .instant import Instant, Occurrence, Pending, Slot, at_once, interfere, mark, never_due, next_random, rounding
 from .math import Refused
 from .semantics import Quantity, Semantics
 
-_slots = 2, 4, 12  #: for each delayed event: at least, at most, and for all together where these leave the choice
-_near = 1e-10  #: relative difference of the sides of a comparison that may change at the same instant
+_tie_seed = 1  #: of the order of events of equal priority, where that matters
+
+
+@dataclass(eq=False)
+class Occurrence:
+    """An event of the file."""
+
+    where: str
+    trigger: Trigger  #: as the model has it, but for its assignments
+    given: dict[str, Any]  #: what its assignments give, by id
+    from_trigger: bool  #: whether the values are those at the time of the trigger
+    writes: set[Any] = field(default_factory=set)  #: what is stored
+    reads: set[Any] = field(default_factory=set)  #: what `given`, delay, priority and storing read
 
 
 class Events:
-    """The events of a model, for `my.model`: `events`, and what `initialise` does at the start. `a_state` is some state
-    of the model."""
+    """The triggers of a model, for `my.model`."""
 
-    def __init__(self, semantics: Semantics, a_state: Any) -> None:
-        self.semantics, self._state = semantics, a_state
-        self.events: list[Event] = []
-        self.initialise: dict[Any, Any] = {}
-        self.reach: dict[Occurrence, set[Occurrence]] = {}
-        self._random: tuple[Any, Any] | None = None
-        self._set_by_events = {q.symbol for q in semantics.quantities.values() if q.changes == "events"}
+    def __init__(self, semantics: Semantics) -> None:
+        self.semantics = semantics
         model = semantics.model
         self.all = [made for i in range(model.getNumEvents()) if (made := self._occurrence(model.getEvent(i), i))]
-        if not self.all:
-            return
-        written = {s for one in self.all for s in one.writes}
-        least, most, together = _slots
-        delayed = sum(one.delay is not None for one in self.all)
-        slots = max(least, min(most, together // max(delayed, 1)))
         for one in self.all:
-            if any(o is not one and interfere(one, o) for o in self.all):
-                one.last = self._accessory(f"{one.id}_time")
-            if one.delay is not None:
-                one.slots = [self._slot(one, i, written) for i in range(slots)]
-        self._now = {s: s for s in written} | {a: a for one in self.all for a in self._accessories_of(one)}
-        groups: dict[Any, list[tuple[Occurrence, Any]]] = {}
-        for one in self.all:
-            for comparison in comparisons_of(one.trigger):
-                for function in functions_of(comparison, self.is_still):
-                    if not self.is_still(function):
-                        groups.setdefault(function, []).append((one, comparison))
-        for function, group in groups.items():
-            self._trigger(function, group)
-        if any(one.slots for one in self.all):
-            self._due()
-        for one in self.all:
-            if one.slots and not one.persistent:
-                for comparison in comparisons_of(one.trigger):
-                    self._cancel(one, comparison)
-        self._start()
-
-    def _accessory(self, wanted: str) -> Any:
-        return sym.accessory(self.semantics.new_name(wanted))
-
-    def is_still(self, expression: Any) -> bool:
-        """Whether an expression changes at events alone."""
-        return all(s in self._set_by_events or s is not sym.time and s.value[0] == "parameter"
-                   for s in symbols_of([expression]))
-
-    def rate_of(self, expression: Any, where: str) -> Any:
-        """The rate by time of an expression, or None where it has none."""
-        try:
-            return self.semantics.total_derivative(expression, where)
-        except Refused:
-            return None
-
-    def random_numbers(self) -> tuple[Any, Any]:
-        """The accessory with the latest random number of an instance, and its value at the start, which follows from
-        the number of the instance."""
-        if self._random is None:
-            start = next_random(next_random(sym.instance % (2**31 - 1), True), True)
-            self._random = sym.integer_accessory(self.semantics.new_name("random_number")), start
-        return self._random
-
-    def _slot(self, one: Occurrence, i: int, written: set[Any]) -> Slot:
-        varying = [n for n, v in one.given.items() if one.from_trigger and any(
-            s in written or s.value[0] == "state" or s is sym.time for s in symbols_of([v]))]
-        return Slot(self._accessory(f"{one.id}_due_{i + 1}"),
-                    {n: self._accessory(f"{one.id}_{n}_{i + 1}") for n in varying})
-
-    @staticmethod
-    def _accessories_of(one: Occurrence) -> list[Any]:
-        return [a for slot in one.slots for a in (slot.due, *slot.values.values())]
-
-    # -- What the file has ---------------------------------------------------------------------------------------------
+            self._act(one)
+        self.triggers = [one.trigger for one in self.all]
+        ties = any(self._interfere(a, b) for i, a in enumerate(self.all) for b in self.all[:i])
+        self.tie_seed = _tie_seed if ties else None
 
     def _occurrence(self, element: Any, index: int) -> Occurrence | None:
+        """What the file has of an event; None if it never happens."""
         where = named(element, "event")
-        if not element.isSetTrigger() or not element.getTrigger().isSetMath():
-            return None  # which never happens
-        translate = self.semantics.translate
+        trigger = element.getTrigger()
+        if not element.isSetTrigger() or not trigger.isSetMath():
+            return None
+        translate, level3 = self.semantics.translate, self.semantics.level > 2
         delay = priority = None
         if element.isSetDelay() and element.getDelay().isSetMath():
             delay = number(translate(element.getDelay().getMath(), f"the delay of {where}"))
@@ -119,12 +62,13 @@ class Events:
             delay = None if is_constant(delay) and value_of(delay) == 0 else delay
         if element.isSetPriority() and element.getPriority().isSetMath():
             priority = number(translate(element.getPriority().getMath(), f"the priority of {where}"))
-        trigger = element.getTrigger()
         condition = truth(translate(trigger.getMath(), f"the trigger of {where}"))
-        level3 = self.semantics.level > 2
         starts = trigger.getInitialValue() if level3 and trigger.isSetInitialValue() else True
         persistent = trigger.getPersistent() if level3 and trigger.isSetPersistent() else True
-        from_trigger = not element.isSetUseValuesFromTriggerTime() or element.getUseValuesFromTriggerTime()
+        if is_constant(condition):
+            if starts or not value_of(condition):
+                return None
+            condition = ex.make("equal", (ex.constant(0.0), ex.constant(0.0)), type=ex.condition)
         given: dict[str, Any] = {}
         for i in range(element.getNumEventAssignments()):
             assignment = element.getEventAssignment(i)
@@ -135,30 +79,44 @@ class Events:
                 raise Refused(f"{where} sets '{name}', which has an assignment rule")
             given[name] = number(translate(assignment.getMath(), f"{named(assignment)} of {where}"))
         name = self.semantics.new_name(element.getIdAttribute() or f"event_{index + 1}")
-        if condition.op != "truth":
-            condition = comparisons_alone(condition, where, self.is_still)
-        if delay is not None and not persistent and any(is_for_an_instant(c, self.is_still)
-                                                        for c in comparisons_of(condition)):
-            raise Refused(f"{where} waits, and its trigger by == ceases to hold at once: make it persistent")
-        made = Occurrence(name, where, condition, starts, persistent, given, from_trigger, delay, priority)
-        stored = self._stores(made, given)
-        made.inputs = set(symbols_of([condition]))
-        made.reads = set(symbols_of([*given.values(), *stored.values(), *(e for e in (delay, priority) if e is not None)
-                                     ])) - {sym.time}
-        marks = {n: mark(n) for n in given}
-        late = [*self._stores(made, marks).values(), *([] if priority is None else [priority])]
-        made.late = set(symbols_of(late)) - set(marks.values())
-        made.writes = set(stored)
-        return made
+        made = Trigger(condition, {}, delay, priority, starts, persistent, False, 1, name)
+        from_trigger = not element.isSetUseValuesFromTriggerTime() or element.getUseValuesFromTriggerTime()
+        stored = self._stores(where, given)
+        reads = {*symbols_of([*given.values(), *stored.values(), *(e for e in (delay, priority) if e is not None)])}
+        return Occurrence(where, made, given, from_trigger, {*stored}, reads)
 
-    def _stores(self, one: Occurrence, given: dict[str, Any]) -> dict[Any, Any]:
+    def _interfere(self, a: Occurrence, b: Occurrence) -> bool:
+        """Whether it may matter which of two events at one instant is executed first."""
+        reads_of_a, reads_of_b = (one.reads | {*symbols_of([one.trigger.condition])} for one in (a, b))
+        return bool(a.writes & (reads_of_b | b.writes) or b.writes & reads_of_a)
+
+    def _act(self, one: Occurrence) -> None:
+        """Gives a trigger its assignments."""
+        trigger, kept = one.trigger, dict[Any, Any]()
+        written = {s for other in self.all for s in other.writes}
+        by_others = {s for other in self.all if other is not one for s in other.writes}
+        if by_others & {*symbols_of([trigger.condition])}:  # it may be triggered twice before it is executed
+            by_others |= one.writes
+        elif trigger.delay is None:  # the condition cannot cease to hold before
+            trigger.persistent = True
+        changing = by_others if trigger.delay is None else written | {
+            s for s in one.reads if s.value[0] in ("state", "built-in")}
+        for value in one.given.values():
+            if one.from_trigger and changing & {*symbols_of([value])} and value not in kept:
+                kept[value] = waiting_value(len(kept))
+        trigger.values = list(kept)
+        trigger.do = self._stores(one.where, {name: kept.get(value, value) for name, value in one.given.items()})
+        delayed = sum(other.trigger.delay is not None for other in self.all)
+        trigger.room = 1 if trigger.delay is None else max(4, min(16, 32 // delayed))
+
+    def _stores(self, where: str, given: dict[str, Any]) -> dict[Any, Any]:
         """The new values of what is stored, from the values of ids."""
         stored: dict[Any, Any] = {}
         quantities = self.semantics.quantities
         for name, value in given.items():
             quantity = quantities[name]
             if quantity.compartment:  # the amount follows from the volume before the event
-                volume = self.semantics.meaning(quantity.compartment, one.where)
+                volume = self.semantics.meaning(quantity.compartment, where)
                 if quantity.in_amount:
                     value = multiply(value, volume)
                 elif quantity.compartment in given:
@@ -166,7 +124,7 @@ class Events:
             stored[quantity.symbol] = value
         for quantity in quantities.values():
             if quantity.compartment in given and quantity.id not in given:
-                self._keep_amount(quantity, given, stored, one.where)
+                self._keep_amount(quantity, given, stored, where)
         return stored
 
     def _keep_amount(self, quantity: Quantity, given: dict[str, Any], stored: dict[Any, Any], where: str) -> None:
@@ -174,81 +132,3 @@ class Events:
         if not quantity.in_amount and quantity.changes != "assignment":
             volume = self.semantics.meaning(quantity.compartment, where)
             stored[quantity.symbol] = divide(multiply(quantity.symbol, volume), given[quantity.compartment])
-
-    # -- Events of the model -------------------------------------------------------------------------------------------
-
-    def _trigger(self, function: Any, group: list[tuple[Occurrence, Any]]) -> None:
-        """The event that finds where comparisons with that difference begin to hold."""
-        instant = Instant(self, self._now)
-        begin = [comparison for _, comparison in group]
-        instant.located = after = {**{c: false for one in begin for c in complements(one)}, **{c: true for c in begin}}
-        before = {c: opposite(value) for c, value in after.items()}
-        happening = []
-        for one in dict.fromkeys(o for o, _ in group):
-            holds = with_values(one.trigger, after)
-            happening.append((one, both(holds, opposite(with_values(one.trigger, before)))))
-            for other in comparisons_of(one.trigger):
-                # which may begin or cease to hold at the same instant
-                if other not in after and not self.is_still(other):
-                    a, b = other.args
-                    is_near = compare("less_equal", ex.abs(subtract(a, b)), _near * add(ex.abs(a), ex.abs(b)))
-                    matters = both(with_values(one.trigger, {**after, other: true}),
-                                   opposite(with_values(one.trigger, {**after, other: false})))
-                    instant.is_open = either(instant.is_open, both(is_near, matters))
-        instant.truth = {one: with_values(one.trigger, after) for one in self.all}
-        instant.happen(happening)
-        names = [e.name for e in self.events]
-        name = group[0][0].id
-        if name in names:
-            name = self.semantics.new_name(f"{name}_{len(names) + 1}")
-        do = instant.assignments([one for one, _ in happening])
-        self.events.append(event(function, name=name, direction="rising", do=do))
-
-    def _due(self) -> None:
-        """The event that finds when something delayed is due."""
-        slots = [(one, slot) for one in self.all for slot in one.slots]
-        next_time = functools.reduce(lambda a, b: ex.make("min", (a, b)), (slot.due for _, slot in slots))
-        instant = Instant(self, self._now)
-        instant.truth = {one: one.trigger for one in self.all}
-        for one, slot in slots:
-            is_due = compare("less_equal", slot.due, sym.time + rounding())
-            values = {n: slot.values.get(n, v) for n, v in one.given.items()} if one.from_trigger else None
-            instant.pending.append(Pending(one, is_due, values))
-            instant.values[slot.due] = choose(is_due, constant(never_due), slot.due)
-        instant.run()
-        self.events.append(event(sym.time - next_time, name=self.semantics.new_name("due"), direction="rising",
-                                 do=instant.assignments([one for one, _ in slots])))
-
-    def _cancel(self, one: Occurrence, comparison: Any) -> None:
-        """The event that finds where a trigger ceases to hold whose executions must not outlast it."""
-        function = function_of(comparison, self.is_still)
-        if self.is_still(function):
-            return
-        name = self.semantics.new_name(f"{one.id}_ceases")
-        after = {comparison: false, **{c: true for c in complements(comparison)}}
-        ceases = opposite(with_values(one.trigger, after))
-        do = {slot.due: choose(ceases, constant(never_due), slot.due) for slot in one.slots}
-        do[sym.end_instance] = both(ceases, any_of(at_once(slot.due) for slot in one.slots))
-        self.events.append(event(ex.make("negate", (function,)), name=name, direction="rising", do=do))
-
-    def _start(self) -> None:
-        """What happens at the start: triggers that do not count as true before it."""
-        start = dict(self._now)
-        for one in self.all:
-            for slot in one.slots:
-                start[slot.due] = constant(never_due)
-                start |= {a: constant(0.0) for a in slot.values.values()}
-        instant = Instant(self, start, at_start=True)
-        instant.truth = {one: one.trigger for one in self.all}
-        instant.happen([(one, either(false if one.starts else one.trigger, instant.about_to_hold(one, one.trigger)))
-                        for one in self.all])
-        if self._random is not None:
-            instant.values.setdefault(*self._random)
-        begins = ex.make("equal", (sym.phase, ex.constant(0)), type=ex.condition)
-        self.initialise = {s: choose(begins, v, s) for s, v in instant.values.items() if v is not s}
-        for one in self.all:
-            if one.last is not None:
-                self.initialise[one.last] = choose(begins, constant(-never_due), one.last)
-        if not never(instant.is_open):
-            started = self.initialise.get(self._state, self._state)
-            self.initialise[self._state] = choose(both(begins, instant.is_open), constant(math.nan), started)

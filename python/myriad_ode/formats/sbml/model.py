@@ -97,17 +97,18 @@ class SbmlModel(Model):
             known = [*(n for n, q in semantics.quantities.items() if not q.changes), *semantics.local_names]
             if given not in known:
                 raise unknown(given, known, "constant of the file that parameters= can name")
-        happening = Events(semantics, next(iter(equations)))
+        happening = Events(semantics)
+        triggers = happening.triggers
         defaults = semantics.defaults
         reduction = Reduction(semantics) if reduce else None
         if reduction is not None and reduction.values:
             equations = reduction.of({s: e for s, e in equations.items() if s not in reduction.values})
-            outputs, happening.initialise = reduction.of(outputs), reduction.of(happening.initialise)
-            for one in happening.events:
-                one.do = reduction.of(one.do)
-                one.function, = reduction.of({0: one.function}).values()
-        actions = [e for one in happening.events for e in (one.function, *one.do.values())]
-        needed = set(symbols_of([*equations.values(), *defaults.values(), *actions, *happening.initialise.values()]))
+            outputs = reduction.of(outputs)
+            for one in triggers:
+                reduction.rewrite(one)
+        actions = [e for one in triggers for e in (one.condition, one.delay, one.priority, *one.values,
+                                                   *one.do.values()) if e is not None]
+        needed = set(symbols_of([*equations.values(), *defaults.values(), *actions]))
         constants: dict[Any, float] = {}
         declared = []
         for quantity in semantics.quantities.values():
@@ -123,9 +124,9 @@ class SbmlModel(Model):
         declared += reduction.parameters if reduction is not None else []
         name = _suffixed(semantics.names.values(), semantics.component_name(name))
         self._reserved = {*semantics.names.values(), *semantics.quantities, *semantics.reactions}
-        super().__init__(equations, happening.events, None, happening.initialise, None, None, None, None, declared, (),
-                         name)
-        self.line, self.hidden = users_line(), frozenset(self.accessories)
+        super().__init__(equations, (), None, None, None, None, None, None, declared, (), name, triggers=triggers,
+                         tie_seed=happening.tie_seed)
+        self.line, self.hidden = users_line(), frozenset(self.accessories + self.integer_accessories)
         self.constants = constants
         self.defaults: dict[str, Any] = {**self.shared_values}
         self.defaults |= {n: e for n, e in defaults.items() if n in self.states or n in self.parameters}

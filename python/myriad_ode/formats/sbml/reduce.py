@@ -4,12 +4,14 @@ each other."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from fractions import Fraction
 from typing import Any
 
+from ...models.trigger import Trigger
 from ...symbolic import symbols as sym
-from ...symbolic.folding import add, constant, divide, is_constant, multiply, number, subtract, value_of
-from .conditions import substituted
+from ...symbolic.folding import add, constant, divide, folded, is_constant, multiply, number, subtract, value_of
+from ...symbolic.rewrite import rebuilt
 from .semantics import Quantity, Semantics
 
 
@@ -79,7 +81,7 @@ class Reduction:
             component = semantics.names[f"conserved {name}"] = semantics.component_name(f"conserved_{name}")
             total = sym.symbol("parameter", component)
             self.parameters.append(total)
-            at_start, = substituted([semantics.amount(name)], {quantity.symbol: number(start)})
+            at_start, = rebuilt([semantics.amount(name)], folded, {quantity.symbol: number(start)})
             semantics.defaults[component] = subtract(at_start, others)
             del semantics.defaults[semantics.names[name]]
             self.values[quantity.symbol] = self._stored(semantics, quantity, add(total, others))
@@ -92,4 +94,13 @@ class Reduction:
 
     def of(self, expressions: dict[Any, Any]) -> dict[Any, Any]:
         """Expressions in what is left."""
-        return dict(zip(expressions, substituted(expressions.values(), self.values)))
+        return dict(zip(expressions, self._written(expressions.values())))
+
+    def rewrite(self, one: Trigger) -> None:
+        """Writes a trigger in what is left."""
+        one.condition, *one.values = self._written([one.condition, *one.values])
+        one.do = self.of(one.do)
+        one.delay, one.priority = (None if e is None else self._written([e])[0] for e in (one.delay, one.priority))
+
+    def _written(self, expressions: Iterable[Any]) -> list[Any]:
+        return rebuilt(list(expressions), folded, self.values)

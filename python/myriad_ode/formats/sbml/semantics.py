@@ -9,6 +9,7 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
+from ...models.trigger import own_names
 from ...symbolic import symbols as sym
 from ...symbolic.derivatives import derivatives
 from ...symbolic.folding import add, constant, divide, is_constant, multiply, number, subtract, total, value_of
@@ -173,6 +174,8 @@ class Semantics:
         the file, except the id `of` what is named."""
         name = re.sub("_+", "_", re.sub("[^A-Za-z0-9_]", "_", wanted)).strip("_") or "unnamed"
         name = name if name[0].isalpha() else f"x_{name}"
+        if self.model.getNumEvents() and own_names.fullmatch(name):
+            name = f"{name}_x"
         return sym.free_name(name, {*self.names.values(), *({*self.quantities, *self.reactions} - {of})})
 
     def new_name(self, wanted: str) -> str:

@@ -22,7 +22,8 @@ __device__ __forceinline__ void tell_facts(python::device_facts* to) {
 
 /// Adds up the values of a warp's threads; its first thread has the sum.
 __device__ __forceinline__ unsigned long long sum_of_warp(unsigned long long value) {
-    for (int distance = 16; distance > 0; distance /= 2) value += __shfl_down_sync(0xffffffff, value, distance);
+    for (int distance = gpu::warp_size / 2; distance > 0; distance /= 2)
+        value += gpu::shuffle_down(~gpu::lane_mask(0), value, distance);
     return value;
 }
 
@@ -35,7 +36,7 @@ extern "C" __global__ void myriad_sum(const std::int64_t* values, std::int64_t s
     for (std::int64_t i = static_cast<std::int64_t>(blockIdx.x) * blockDim.x + threadIdx.x; i < size; i += all)
         own += static_cast<unsigned long long>(values[i]);
     own = myriad::detail::sum_of_warp(own);
-    if (threadIdx.x % 32 == 0) atomicAdd(sum, own);
+    if (threadIdx.x % myriad::gpu::warp_size == 0) atomicAdd(sum, own);
 }
 
 namespace myriad::detail::inline MYRIAD_TARGET {

@@ -18,9 +18,6 @@ using uintptr_t = unsigned long;
 #define M_PI_2 1.57079632679489661923
 #define M_E 2.7182818284590452354
 
-/// A function of other compilers, of which the library takes the number of a mask's lowest bit.
-inline int __builtin_ctzll(unsigned long long x) { return __clzll(static_cast<long long>(__brevll(x))); }
-
 namespace std {
 
 using ::int8_t, ::int16_t, ::int32_t, ::int64_t, ::uint8_t, ::uint16_t, ::uint32_t, ::uint64_t;
@@ -501,8 +498,8 @@ inline bool isfinite(double x) { return ::fabs(x) <= numeric_limits<double>::max
 inline bool isfinite(float x) { return ::fabsf(x) <= numeric_limits<float>::max(); }
 inline bool isinf(double x) { return ::fabs(x) == numeric_limits<double>::infinity(); }
 inline bool isinf(float x) { return ::fabsf(x) == numeric_limits<float>::infinity(); }
-inline bool signbit(double x) { return __double2hiint(x) < 0; }
-inline bool signbit(float x) { return __float_as_int(x) < 0; }
+inline bool signbit(double x) { return __builtin_bit_cast(int64_t, x) < 0; }
+inline bool signbit(float x) { return __builtin_bit_cast(int32_t, x) < 0; }
 
 // <numbers>
 
