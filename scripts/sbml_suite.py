@@ -77,7 +77,7 @@ def values_of(run, name, settings):
         if name in settings.get(kind, ()):
             name = next((n for n in (f"{name}_{kind}",) if n in run), name)
     values = run[name]
-    return values[0] if values.ndim == 2 else np.full(run.sample_times.shape[1], values[0])
+    return values[0] if values.ndim == 2 else np.full(run.t_sample.shape[1], values[0])
 
 
 def largest_error(expected, got, absolute, relative):
@@ -112,7 +112,7 @@ def outcome_of(folder, file, options):
         header, expected = expected_of(folder)
         run = solved(model, settings, expected[:, 0], options)
         if run.failed.any():
-            return "failed", f"ended as {my.status_names[run.status[0]]}"
+            return "failed", f"ended as {run.status[0]}"
         absolute, relative = (float(settings[key][0]) for key in ("absolute", "relative"))
         errors = {name: largest_error(expected[:, column], values_of(run, name, settings), absolute, relative)
                   for column, name in enumerate(header) if column}

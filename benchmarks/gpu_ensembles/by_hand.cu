@@ -3,6 +3,7 @@
 // nothing beside the method. The library's kernel is measured against it.
 #include <chrono>
 #include <fstream>
+#include <stdexcept>
 
 #include <myriad/cuda/check.cuh>
 #include <myriad/cuda/resources.cuh>
@@ -60,6 +61,10 @@ __global__ void __launch_bounds__(256) lorenz_steps(std::int64_t size, int steps
 
 namespace cuda = myriad::cuda;
 
+static void check(cudaError_t status) {
+    if (status != cudaSuccess) throw std::runtime_error(cudaGetErrorString(status));
+}
+
 struct lorenz_by_hand::memory {
     memory(int device, std::int64_t instances, double constant)
         : here(device), size(instances), b(constant), host(4, instances, 0) {
@@ -67,24 +72,26 @@ struct lorenz_by_hand::memory {
         on_device.reserve(bytes(), 4 * sizeof(double));
     }
     std::size_t bytes() const { return static_cast<std::size_t>(4 * size) * sizeof(double); }
+    cudaStream_t own_stream() { return reinterpret_cast<cudaStream_t>(stream.get()); }
     double* device_state() const { return static_cast<double*>(on_device.data()); }
 
     void upload() {
-        MYRIAD_CUDA(cudaMemcpyAsync(on_device.data(), host.data(), bytes(), cudaMemcpyHostToDevice, stream.get()));
+        check(cudaMemcpyAsync(on_device.data(), host.data(), bytes(), cudaMemcpyHostToDevice, own_stream()));
     }
     void launch(int steps, double h) {
         const auto threads = static_cast<unsigned>(block);
         const auto blocks = static_cast<unsigned>((size + block - 1) / block);
-        MYRIAD_CUDA(cudaEventRecord(begun.get(), stream.get()));
-        lorenz_steps<<<blocks, threads, 0, stream.get()>>>(size, steps, {h, 0.5 * h, h / 3, h / 6, b},
+        check(cudaEventRecord(reinterpret_cast<cudaEvent_t>(begun.get()), own_stream()));
+        lorenz_steps<<<blocks, threads, 0, own_stream()>>>(size, steps, {h, 0.5 * h, h / 3, h / 6, b},
                                                            device_state() + 3 * size, device_state());
-        cuda::check(cudaPeekAtLastError(), "the launch of the hand-written kernel");
-        MYRIAD_CUDA(cudaEventRecord(done.get(), stream.get()));
+        check(cudaPeekAtLastError());
+        check(cudaEventRecord(reinterpret_cast<cudaEvent_t>(done.get()), own_stream()));
     }
-    void wait() { MYRIAD_CUDA(cudaStreamSynchronize(stream.get())); }
+    void wait() { check(cudaStreamSynchronize(own_stream())); }
     double kernel_ms() {
         float milliseconds = 0;
-        MYRIAD_CUDA(cudaEventElapsedTime(&milliseconds, begun.get(), done.get()));
+        check(cudaEventElapsedTime(&milliseconds, reinterpret_cast<cudaEvent_t>(begun.get()),
+                                   reinterpret_cast<cudaEvent_t>(done.get())));
         return static_cast<double>(milliseconds);
     }
 
@@ -127,9 +134,8 @@ lorenz_by_hand::times lorenz_by_hand::run(int steps, double h) {
     const auto begin = std::chrono::steady_clock::now();
     m.upload();
     m.launch(steps, h);
-    MYRIAD_CUDA(cudaMemcpyAsync(m.host.data(), m.on_device.data(),
-                                static_cast<std::size_t>(3 * m.size) * sizeof(double), cudaMemcpyDeviceToHost,
-                                m.stream.get()));
+    check(cudaMemcpyAsync(m.host.data(), m.on_device.data(), static_cast<std::size_t>(3 * m.size) * sizeof(double),
+                          cudaMemcpyDeviceToHost, m.own_stream()));
     m.wait();
     const std::chrono::duration<double, std::milli> all = std::chrono::steady_clock::now() - begin;
     return {m.kernel_ms(), all.count()};
@@ -137,7 +143,7 @@ lorenz_by_hand::times lorenz_by_hand::run(int steps, double h) {
 
 lorenz_by_hand::resources lorenz_by_hand::kernel() const {
     cudaFuncAttributes attributes{};
-    MYRIAD_CUDA(cudaFuncGetAttributes(&attributes, reinterpret_cast<const void*>(&lorenz_steps)));
+    check(cudaFuncGetAttributes(&attributes, reinterpret_cast<const void*>(&lorenz_steps)));
     return {attributes.numRegs, memory_->block, static_cast<std::int64_t>(attributes.localSizeBytes)};
 }
 
@@ -147,10 +153,10 @@ std::vector<std::string> describe_gpu(int device) {
     };
     cudaDeviceProp properties{};
     int driver = 0, runtime = 0, clock = 0;
-    MYRIAD_CUDA(cudaGetDeviceProperties(&properties, device));
-    MYRIAD_CUDA(cudaDeviceGetAttribute(&clock, cudaDevAttrClockRate, device));
-    MYRIAD_CUDA(cudaDriverGetVersion(&driver));
-    MYRIAD_CUDA(cudaRuntimeGetVersion(&runtime));
+    check(cudaGetDeviceProperties(&properties, device));
+    check(cudaDeviceGetAttribute(&clock, cudaDevAttrClockRate, device));
+    check(cudaDriverGetVersion(&driver));
+    check(cudaRuntimeGetVersion(&runtime));
     std::string module;
     std::ifstream file("/proc/driver/nvidia/version");
     if (!std::getline(file, module)) module = "unknown";

@@ -127,6 +127,7 @@ std::vector<benchmark_case> all_cases() {
     for (benchmark_case& what : lorenz96_cases()) all.push_back(std::move(what));
     all.push_back(pleiades_case());
     all.push_back(van_der_pol_case());
+    for (benchmark_case& what : heavy_cases()) all.push_back(std::move(what));
     return all;
 }
 

@@ -72,7 +72,7 @@ def main():
         made, sizes = problems[name]
         for n in options.sizes or sizes:
             model, by, values, start, span = made(n)
-            call = dict(by=by, of=list(start), start=start, time=span, samples=np.linspace(*span, 21)[1:],
+            call = dict(free=by, of=list(start), start=start, time=span, samples=np.linspace(*span, 21)[1:],
                         method=options.method, rtol=options.tolerance, atol=options.tolerance, device=options.device)
             rows = values * np.random.default_rng(1).uniform(0.9, 1.1, (options.instances, len(values)))
             by_adjoint = my.batched(model, adjoint=True, **call)

@@ -172,7 +172,7 @@ def main():
         run = my.solve(model, dict(zip(parameters, values)), samples=times, **call)
         sizes = np.array([np.abs(run.samples[s.value[1]]).max() for s in states])
         tolerances = dict(rtol=options.tolerance, atol=list(options.tolerance * sizes))
-        function = my.batched(model, by=parameters, of=states, samples=times, adjoint=True, **call, **tolerances)
+        function = my.batched(model, free=parameters, of=states, samples=times, adjoint=True, **call, **tolerances)
         rows = values * np.random.default_rng(1).uniform(0.9, 1.1, (options.instances, len(values)))
         plain, _ = best(lambda: function(rows), options.calls)  # noqa: B023
         cost, (_, gradient) = best(lambda: function.vjp(rows, lambda y: 2 * y / sizes**2), options.calls)  # noqa: B023

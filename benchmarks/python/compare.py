@@ -189,14 +189,14 @@ def gpu():
 
 #: by name: the package, where it runs, and how
 PROGRAMS = {
-    "myriad": ("myriad", f"CPU, {CORES} cores", lambda side: by_myriad(side, device="cpu")),
-    "myriad order 8": ("myriad", f"CPU, {CORES} cores",
+    "myriad": ("myriad_ode", f"CPU, {CORES} cores", lambda side: by_myriad(side, device="cpu")),
+    "myriad order 8": ("myriad_ode", f"CPU, {CORES} cores",
                        lambda side: by_myriad(side, device="cpu", method="dormand_prince_8")),
-    "myriad interpreted": ("myriad", f"CPU, {CORES} cores", lambda side: by_myriad(side, interpreted=True)),
+    "myriad interpreted": ("myriad_ode", f"CPU, {CORES} cores", lambda side: by_myriad(side, interpreted=True)),
     "heyoka": ("heyoka", f"CPU, {CORES} cores", by_heyoka),
     "diffrax": ("diffrax", f"CPU, {CORES} cores", by_diffrax),
     "scipy": ("scipy", "CPU, one process", by_scipy),
-    "myriad gpu": ("myriad", "GPU", lambda side: by_myriad(side, device="cuda")),
+    "myriad gpu": ("myriad_ode", "GPU", lambda side: by_myriad(side, device="cuda")),
     "cubie": ("cubie", "GPU", by_cubie),
 }
 

@@ -59,7 +59,7 @@ def measure(equations, sweep, start, end, repeats):
     def point(method, tolerance):
         runs = [my.solve(model, sweep, method=method, rtol=tolerance, atol=tolerance, **call) for _ in range(repeats)]
         error = np.abs(np.array(list(runs[0].states.values())) - exact) / size
-        return (float(np.median(error.max(axis=0))), float(runs[0].steps("evaluations").mean()),
+        return (float(np.median(error.max(axis=0))), float(runs[0].rhs_evaluations.mean()),
                 min(run.report.seconds for run in runs))
 
     return {method: [point(method, tolerance) for tolerance in TOLERANCES] for method in METHODS}

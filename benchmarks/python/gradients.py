@@ -31,7 +31,7 @@ def simulated(device, rtol=RTOL, atol=ATOL):
     birth, hunt, death, growth = rates = my.parameters("birth hunt death growth")
     model = my.model({prey: birth * prey - hunt * prey * predator,
                       predator: growth * prey * predator - death * predator}, name="lotka_volterra")
-    return my.batched(model, by=rates, of=[prey, predator], start=dict(zip((prey, predator), START)), time=(0, END),
+    return my.batched(model, free=rates, of=[prey, predator], start=dict(zip((prey, predator), START)), time=(0, END),
                       samples=TIMES, method="tsitouras_5", rtol=rtol, atol=atol, device=device)
 
 

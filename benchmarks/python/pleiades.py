@@ -53,7 +53,7 @@ def main():
         run = my.solve(model, {m1: np.linspace(0.5, 2, instances)}, start=start, time=(0, 3), rtol=1e-6, atol=1e-6,
                        method=options.method, device=options.device, **more)
         seconds = time.perf_counter() - began
-        names = np.array(my.status_names)[run.status]
+        names = run.status
         counts = ", ".join(f"{count} {name}" for name, count in zip(*np.unique(names, return_counts=True)))
         print(f"{instances} instances {more}: {seconds:.3f} s, kernel {run.report.kernel_seconds:.3f} s; {counts}",
               flush=True)

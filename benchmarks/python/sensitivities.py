@@ -76,17 +76,17 @@ def main():
         few = slice(None, None, max(options.instances // 64, 1))
         reference = my.solve(**{**call, "sweep": {**at, vary: np.linspace(*over, options.instances)[few]},
                                 "rtol": 1e-11, "atol": 1e-14 if name == "robertson" else 1e-12},
-                             sensitivities=by[:max(options.counts)])
+                             free=by[:max(options.counts)])
         plain, run = measured(call, options.calls, cpu)
-        print(f"{name},0,{1e3 * plain:.1f},1,1,{run.steps().mean():.1f},", flush=True)
+        print(f"{name},0,{1e3 * plain:.1f},1,1,{run.accepted_steps.mean():.1f},", flush=True)
         for count in options.counts:
-            seconds, run = measured({**call, "sensitivities": by[:count], "sensitivity_control": options.control},
+            seconds, run = measured({**call, "free": by[:count], "sensitivity_control": options.control},
                                     options.calls, cpu)
             error = max(np.max(abs(run.sensitivity[c, k][few] - reference.sensitivity[c, k])
                                / np.max(abs(reference.sensitivity[c, k])))
                         for c in reference.sensitivity for k in by[:count])
             print(f"{name},{count},{1e3 * seconds:.1f},{seconds / plain:.2f},{1 + 0.6 * count:.1f},"
-                  f"{run.steps().mean():.1f},{error:.1e}", flush=True)
+                  f"{run.accepted_steps.mean():.1f},{error:.1e}", flush=True)
 
 
 if __name__ == "__main__":

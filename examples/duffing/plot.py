@@ -35,12 +35,12 @@ def read(numpy, path, program, columns):
     if path.endswith(".csv"):
         return figures.read_table(numpy, path, program, columns)
     names = [name for name, _ in PANELS]
-    with figures.open_netcdf(path, program, names + ["k", "B", "x_begin", "v_begin", "phase"]) as data:
+    with figures.open_netcdf(path, program, names + ["k", "B", "x_start", "v_start", "phase"]) as data:
         table = {name: data[name][:].ravel() for name in names}
         k, phases = data["k"][:], data["phase"][:]
         table["k"] = numpy.repeat(k, phases.size)
         table["B"] = numpy.full(1, data["B"][...])
-        comments = (f"x(0) = {data['x_begin'][...]}, v(0) = {data['v_begin'][...]}\n"
+        comments = (f"x(0) = {data['x_start'][...]}, v(0) = {data['v_start'][...]}\n"
                     f"linspace({k[0]}, {k[-1]}, {k.size})\n"
                     f"{int(phases[0])} transient, {phases.size} recorded\n"
                     f"absolute tolerance {numpy.max(data.getncattr('options_absolute_tolerance'))}")

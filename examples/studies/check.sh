@@ -15,10 +15,10 @@ if python=$(python_with xarray); then
 import xarray
 with xarray.open_dataset("first.nc") as first, xarray.open_dataset("duffing_study.nc") as second:
     assert first.equals(second)
-    assert dict(first.sizes) == {"k": 200, "x_begin": 9, "phase": 4, "x_bin": 100, "x_side": 3}
-    assert first.x.dims == ("k", "x_begin", "phase") and first.v_end.dims == ("k", "x_begin")
+    assert dict(first.sizes) == {"k": 200, "x_start": 9, "phase": 4, "x_bin": 100, "x_side": 3}
+    assert first.x.dims == ("k", "x_start", "phase") and first.v_end.dims == ("k", "x_start")
     assert first.x_histogram.sum() + first.x_outside.sum() == first.x.size
-    assert abs(first.v_begin.mean()) < 0.01 and abs(first.v_begin.std() - 0.1) < 0.01
+    assert abs(first.v_start.mean()) < 0.01 and abs(first.v_start.std() - 0.1) < 0.01
 END
     "$python" "$(dirname "$(realpath "$0")")/read.py" >read.txt || fail 'the file is not read as docs/studies.md says'
     grep -q '^True 1e-09$' read.txt || fail 'the statuses or the attributes are not as they should be'

@@ -36,4 +36,5 @@ assert (run["bounces"] == 5).all() and set(run.report.by_status) == {"stopped_by
 assert np.allclose(run["t_impact"], expected, rtol=1e-8)
 assert np.allclose(run["lost"], (1 - loss**10) * speed**2 / 2, rtol=1e-8)
 assert np.allclose(run["highest"], height, rtol=1e-10)
-assert table["t_impact"].sizes["r"] == 5 and np.allclose(table["t_impact"].sel(x_start=2.0), expected[1::2], rtol=1e-8)
+assert table["t_impact_end"].sizes["r"] == 5
+assert np.allclose(table["t_impact_end"].sel(x_start=2.0), expected[1::2], rtol=1e-8)

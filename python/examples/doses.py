@@ -22,7 +22,7 @@ plt.figure()
 sweep = my.grid(dose=np.linspace(20, 200, 60), interval=np.linspace(4, 24, 41))
 run = my.solve(model, sweep, time=(0, 240), samples=np.linspace(192, 240, 200))
 table = run.to_xarray()  # with the axes dose and interval
-last_days = table["drug"]
+last_days = table["drug_sample"]
 safe = (last_days.max("sample") < 4) & (last_days.min("sample") > 0.5)
 safe.plot.pcolormesh(x="dose", y="interval")
 plt.savefig("doses.png")

@@ -52,7 +52,7 @@ landed = my.event(x, direction="falling", do={v: -r * v, my.end_phase: my.event_
 ball = my.model({x: v, v: -g}, events=landed, name="ball")
 
 run = my.solve(ball, {r: 0.8, g: [9.81, 1.62]}, start={x: 1, v: 0}, time=(0, 10), rtol=1e-10, atol=1e-10,
-               sensitivities=[r, g, x])
+               free=[r, g, x])
 run.sensitivity[my.time, g]  # of the time of the second impact by gravity, one for each instance
 run.sensitivity[v]           # of the speed after it, by r, g and the height x at the start
 # end of snippet
@@ -60,7 +60,7 @@ run.sensitivity[v]           # of the speed after it, by r, g and the height x a
 # The second impact is at (1 + 2 r) sqrt(2 x / g), after which the ball has the speed r^2 sqrt(2 g x).
 gravity = np.array([9.81, 1.62])
 fall = np.sqrt(2 / gravity)
-np.testing.assert_allclose(run.t, 2.6 * fall, rtol=1e-9)
+np.testing.assert_allclose(run.t_last, 2.6 * fall, rtol=1e-9)
 np.testing.assert_allclose(run.sensitivity[my.time], np.stack([2 * fall, -1.3 * fall / gravity, 1.3 * fall], axis=1),
                            rtol=1e-7)
 speed = np.sqrt(2 * gravity)

@@ -19,7 +19,7 @@ bounds = {contact: (0.3, 0.6), recovery: (0.05, 0.2), fading: (0, 0.01), infecte
 # snippet: sobol
 design = my.designs.sobol(bounds, 1024)  # 1024 (4 + 2) sets
 days = np.arange(5, 101, 5)
-simulate = my.batched(model, by=design.names, of=infected, start={susceptible: 1}, time=(0, 100), samples=days)
+simulate = my.batched(model, free=design.names, of=infected, start={susceptible: 1}, time=(0, 100), samples=days)
 indices = design.indices(simulate(design.points)[:, :, 0])  # of the share of infected on each day
 for name in design.names:
     plt.plot(days, indices["total"][name], label=name)

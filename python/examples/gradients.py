@@ -15,10 +15,10 @@ birth, hunt, death, growth = rates = my.parameters("birth hunt death growth")
 model = my.model({prey: birth * prey - hunt * prey * predator, predator: growth * prey * predator - death * predator},
                  name="lotka_volterra")
 
-simulate = my.batched(model, by=rates, of=[prey, predator], start={prey: 30, predator: 4}, time=(0, 20),
+simulate = my.batched(model, free=rates, of=[prey, predator], start={prey: 30, predator: 4}, time=(0, 20),
                       samples=np.arange(1, 21))
 
-theta = np.array([0.5, 0.025, 0.9, 0.028])  # in the order of by=
+theta = np.array([0.5, 0.025, 0.9, 0.028])  # in the order of free=
 values, slopes = simulate.with_jacobian(theta)  # [time, quantity] and [time, quantity, rate]
 many = simulate(theta * np.linspace(0.9, 1.1, 500)[:, None])  # [set, time, quantity]: one call of solve
 # end of snippet
@@ -43,7 +43,7 @@ found = optimize.minimize(loss, np.log(theta), jac=True, method="BFGS")
 np.testing.assert_allclose(np.exp(found.x), true, rtol=0.02)
 
 # snippet: adjoint
-by_adjoint = my.batched(model, by=rates, of=[prey, predator], start={prey: 30, predator: 4}, time=(0, 20),
+by_adjoint = my.batched(model, free=rates, of=[prey, predator], start={prey: 30, predator: 4}, time=(0, 20),
                         samples=np.arange(1, 21), adjoint=True)
 
 # the results, and the derivatives of half the sum of squares, whose derivatives by the results are the residuals

@@ -18,8 +18,8 @@ sweep = my.grid(alpha_u=strengths, alpha_v=strengths)
 set_to_u = my.solve(switch, sweep, time=(0, 200), rtol=1e-8)  # starts with 5 of u and none of v, as in the file
 set_to_v = my.solve(switch, sweep, start={"u": 0, "v": 5}, time=(0, 200), rtol=1e-8)
 
-table = set_to_u.to_xarray()  # with the axes alpha_u and alpha_v; "state", a rule of the file, is (u - v) / (u + v)
-table["remembers"] = table["state"] - set_to_v.to_xarray()["state"] > 0.1
+table = set_to_u.to_xarray()  # with the axes alpha_u and alpha_v; "state", a rule of the file: (u - v) / (u + v)
+table["remembers"] = table["state_end"] - set_to_v.to_xarray()["state_end"] > 0.1
 table["remembers"].plot.pcolormesh(xscale="log", yscale="log")
 plt.savefig("sbml.png")
 # end of snippet

@@ -15,7 +15,7 @@ neuron = my.read_xpp(here / "adaptive_neuron.ode")
 sweep = my.grid(I=np.linspace(0.5, 2, 60), b=np.linspace(0, 0.5, 40))
 
 run = my.solve(neuron, sweep, time=neuron.time, rtol=1e-6)  # the file's time, from 0 to `total`
-spikes = run.to_xarray()["count"]  # with the axes i and b: names are in small letters, as XPPAUT knows no others
+spikes = run.to_xarray()["count_end"]  # with the axes i and b: names are in small letters, as XPPAUT knows no others
 spikes.plot.pcolormesh(x="i", y="b")
 plt.savefig("xpp.png")
 # end of snippet

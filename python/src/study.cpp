@@ -62,6 +62,16 @@ std::vector<studies::component> components_of(const model_of_study& model) {
     return all;
 }
 
+/// What results call components and outputs, by their names in Python, where no two have the same.
+std::map<std::string, std::string> result_names(const names_of_kinds& names, const std::vector<std::string>& outputs) {
+    const studies::component_names all("", components_of({names_from(names), {}, {}}));
+    std::map<std::string, std::string> called;
+    for (const studies::component& c : all.all())
+        if (c.kind != component_kind::t_begin && c.kind != component_kind::t_end) called[c.name] = all.variable(c);
+    for (const std::string& output : outputs) called[output] = all.is_taken(output) ? "output_" + output : output;
+    return called;
+}
+
 /// A model whose real type is known only at run time: for studies, and what kernels are added to.
 struct made_model {
     std::shared_ptr<const studies::any_model> studied;
@@ -333,6 +343,8 @@ void bind_study(nb::module_& m) {
     for (const auto& [name, make] : studies::named_reductions)
         m.def(name, [reduction = make](const std::string& variable) { return reduction(variable); });
     m.def("sum_of", &sum_by_python);
+
+    m.def("result_names", &result_names);
 
     nb::class_<opened_results>(m, "Results")
         .def_prop_ro("axes", [](const opened_results& r) { return dimensions_of(r.content().axes); })

@@ -14,7 +14,7 @@ times = np.array([0.0, 0.3, 0.31, 1.0, 2.0])  # the start, two in one step, and 
 sets = np.array([[1.0, 0.5, 0.7, 1.2], [2.0, 0.9, 0.3, 0.8], [0.5, 1.5, 1.0, 0.2]])  # of a, b, c and x at the start
 driven = my.model({x: a * x - b * x * y + c * my.sin(3 * my.time) * x, y: b * x * y - y + c * my.exp(-x * x)},
                   name="driven")
-functions = {"by": [a, b, c, x], "start": {y: 1.0}}
+functions = {"free": [a, b, c, x], "start": {y: 1.0}}
 
 
 def both(model, values, weights=None, **arguments):
@@ -49,7 +49,7 @@ def test_an_adjoint_of_the_end_goes_backwards_in_time_too():
 
 def test_the_gradient_of_a_spring_is_that_of_its_closed_form():
     k = my.parameter("k")
-    spring = my.batched(my.model({x: y, y: -k * x}), by=[k, x], of=x, start={y: 0}, time=(0, 2), samples=[0.5, 2.0],
+    spring = my.batched(my.model({x: y, y: -k * x}), free=[k, x], of=x, start={y: 0}, time=(0, 2), samples=[0.5, 2.0],
                         adjoint=True, device="cpu", **tight)
     k, x0, t = np.array([1.0, 2.0, 3.0]), np.array([1.0, 0.5, -1.0]), np.array([0.5, 2.0])
     w = np.sqrt(k)[:, None]
@@ -72,7 +72,7 @@ def robertson():
 @pytest.mark.long
 def test_stiff_gradients_are_those_of_controlled_sensitivities():
     model, states, rates = robertson()
-    call = dict(by=rates, of=states, start=dict(zip(states, (1, 0, 0))), time=(0, 400), samples=[0.4, 40.0, 400.0],
+    call = dict(free=rates, of=states, start=dict(zip(states, (1, 0, 0))), time=(0, 400), samples=[0.4, 40.0, 400.0],
                 method="rodas_5p", rtol=1e-10, atol=dict(zip(states, (1e-10, 1e-14, 1e-10))), device="cpu")
     at, weights = np.array([0.04, 3e7, 1e4]), np.array([1.0, 1e4, -0.5])
     found = my.batched(model, adjoint=True, **call).vjp(at, weights)[1]
@@ -89,7 +89,7 @@ def test_a_stiff_network_that_needs_pivots_has_the_gradient_of_differences():
     substances, rates = my.states([f"s{i}" for i in range(n)]), my.parameters([f"k{i}" for i in range(n)])
     flows = [k * s * (1 + z) for k, s, z in zip(rates, substances, substances[2:] + substances[:2])]
     model = my.model({s: flows[i - 1] - flows[i] for i, s in enumerate(substances)}, name="ring")
-    f = my.batched(model, by=rates, of=substances[::2], start={s: 0.1 * i for i, s in enumerate(substances)},
+    f = my.batched(model, free=rates, of=substances[::2], start={s: 0.1 * i for i, s in enumerate(substances)},
                    time=(0, 20), samples=[0.1, 20.0], adjoint=True, method="rodas_5p", rtol=1e-11, atol=1e-13,
                    device="cpu")
     at, weights = np.array([1e3, 0.04, 30.0, 1.0, 1e4, 2.0]), np.arange(1.0, 7).reshape(2, 3)
@@ -108,7 +108,7 @@ def test_doses_at_stop_times_have_an_adjoint():
     model = my.model({x: -a * x, y: a * x * x - b * y}, stops=[doses, refill], name="doses")
     at = np.array([[1.0, 0.5, 2.0, 0.7], [0.3, 1.0, 1.0, 0.2]])
     for samples in ([0.0, 0.5, 0.6, 1.7], None):  # some at the time of an action, which they show the state before
-        assert_equal(*both(model, at, by=[a, b, dose, share], of=[x, y], start={x: 0.1, y: 0.2}, time=(0, 1.5 if
+        assert_equal(*both(model, at, free=[a, b, dose, share], of=[x, y], start={x: 0.1, y: 0.2}, time=(0, 1.5 if
                            samples is None else 2), samples=samples, rtol=1e-8, atol=1e-8))
 
 
@@ -121,7 +121,7 @@ def test_events_that_depend_on_the_state_have_an_adjoint():
     run = my.solve(ball, {g: 9.81, r: 0.8, floor: 0.1}, start={x: 1, y: 0}, time=(0, 2), record=[x])
     assert run["y"][0] != 0
     for samples in (np.array([0.2, 1.0, 1.9]), None):
-        found, expected = both(ball, at, by=[g, r, floor, x], of=[x, y], start={y: 0}, time=(0, 1.9), samples=samples,
+        found, expected = both(ball, at, free=[g, r, floor, x], of=[x, y], start={y: 0}, time=(0, 1.9), samples=samples,
                                rtol=1e-11, atol=1e-11)
         # forward sensitivities see the event where the step's interpolant has it
         assert_equal(found, expected, rtol=1e-7)
@@ -129,7 +129,7 @@ def test_events_that_depend_on_the_state_have_an_adjoint():
 
 def test_an_event_at_the_time_of_another_action_is_refused():
     model = my.model({x: -a, y: 0 * b}, events=my.event(x, do={y: y + 1}), stops=my.stop(1.0, do={y: 2 * y}))
-    f = my.batched(model, by=[a, b], of=y, start={x: 1.0, y: 1.0}, time=(0, 2), adjoint=True, device="cpu")
+    f = my.batched(model, free=[a, b], of=y, start={x: 1.0, y: 1.0}, time=(0, 2), adjoint=True, device="cpu")
     with pytest.raises(my.Error, match="several actions at one time"):
         f.vjp([[1.0, 1.0], [0.7, 1.0]], [1.0])
 
@@ -151,13 +151,13 @@ def test_a_network_with_sparse_factors_has_the_derivatives_of_the_same_steps():
     network = my.model({z[i]: (flow[i - 1] if i > 0 else back) - (flow[i] if i < 6 else back) for i in range(7)},
                        name="network")
     start = {one: 0.1 * (i + 1) for i, one in enumerate(z) if i != 4}
-    assert_equal(*both(network, np.array([[3.0, 0.2], [1.0, 0.9]]), of=[z[0], z[6], z[5]], by=[a, z[4]], start=start,
+    assert_equal(*both(network, np.array([[3.0, 0.2], [1.0, 0.9]]), of=[z[0], z[6], z[5]], free=[a, z[4]], start=start,
                        time=(0, 2), samples=[0.1, 1.0, 2.0], method="rosenbrock_23", rtol=1e-5, atol=1e-6))
 
 
 def test_instances_that_fail_are_nan_alone_and_the_order_changes_no_bit():
     model = my.model({x: a * x * x - b * y, y: c * x - y}, name="bursting")
-    function = my.batched(model, by=[a, b, c, x], of=[x, y], start={y: 0.1}, time=(0, 2), samples=[0.5, 2.0],
+    function = my.batched(model, free=[a, b, c, x], of=[x, y], start={y: 0.1}, time=(0, 2), samples=[0.5, 2.0],
                           adjoint=True, max_steps=2000, device="cpu:2")
     rows = np.random.default_rng(1).uniform(0.1, 0.6, (203, 4))
     alone = function.vjp(rows, np.ones((2, 2)))
@@ -206,7 +206,7 @@ def test_a_model_from_a_file_has_an_adjoint_of_its_outputs(tmp_path):
     file = tmp_path / "decay.ode"
     file.write_text("par a=1, b=2, k=3\nx' = -a*x/(k+x) + b/(1+k*k)\ninit x=1\naux flow=a*x/(k+x)+t\ndone\n")
     model = my.read_xpp(str(file))
-    assert_equal(*both(model, [[1.0, 2.0, 3.0, 1.0], [0.5, 1.0, 2.0, 0.3]], by=["a", "b", "k", "x"], of=["flow", "x"],
+    assert_equal(*both(model, [[1.0, 2.0, 3.0, 1.0], [0.5, 1.0, 2.0, 0.3]], free=["a", "b", "k", "x"], of=["flow", "x"],
                        time=(0, 2), samples=[0.5, 2.0], rtol=1e-8, atol=1e-8))
 
 
@@ -258,6 +258,6 @@ def test_jax_and_torch_take_gradients_by_an_adjoint():
     (driven, {"of": my.time}, "a result is the time of the end"),
 ])
 def test_what_has_no_adjoint_is_refused_with_a_cure(model, options, why):
-    arguments = {"by": [a, b], "of": x, "start": {x: 1, y: 1}, "time": (0, 2), **options}
+    arguments = {"free": [a, b], "of": x, "start": {x: 1, y: 1}, "time": (0, 2), **options}
     with pytest.raises(my.Error, match=f"{why}.*leave out adjoint=True, for forward sensitivities"):
         my.batched(model, adjoint=True, **arguments)

@@ -28,7 +28,7 @@ def closed_slopes(theta, t):
 
 @pytest.fixture(scope="module")
 def position():
-    return my.batched(spring, by=[k, x], of=x, sweep={B: 0.5}, start={v: 0}, time=(0, 2), samples=times, **tight)
+    return my.batched(spring, free=[k, x], of=x, sweep={B: 0.5}, start={v: 0}, time=(0, 2), samples=times, **tight)
 
 
 @pytest.fixture
@@ -59,7 +59,7 @@ def test_a_batch_has_the_derivatives_of_its_closed_form(position):
 
 
 def test_instances_that_failed_are_nan():
-    bursting = my.batched(my.model({x: k * x * x}, name="bursting"), by=[k], of=[x, my.time], start={x: 1.0},
+    bursting = my.batched(my.model({x: k * x * x}, name="bursting"), free=[k], of=[x, my.time], start={x: 1.0},
                           time=(0, 2), max_steps=1000)
     values, slopes = bursting.with_jacobian([[0.1], [1.0]])
     np.testing.assert_allclose(values[0], [1 / 0.8, 2], rtol=1e-6)
@@ -68,12 +68,12 @@ def test_instances_that_failed_are_nan():
 
 
 @pytest.mark.parametrize("arguments, message", [
-    (dict(by=[k, x], of=x, sweep={B: 0.5, k: 1}), "'k' is in by= and has a value in sweep="),
-    (dict(by=[k, k], of=x), "name at least one component each"),
-    (dict(by=["q"], of=x), "'q' is no component that by= can name"),
-    (dict(by=[k], of=["q"]), "'q' is no state, accessory or output"),
-    (dict(by=[k], of=x, size=3), "chooses size= itself"),
-    (dict(by=[k], of=my.time, samples=3), "leave out samples="),
+    (dict(free=[k, x], of=x, sweep={B: 0.5, k: 1}), "'k' is in free= and has a value in sweep="),
+    (dict(free=[k, k], of=x), "name at least one component each"),
+    (dict(free=["q"], of=x), "'q' is no component that free= can name"),
+    (dict(free=[k], of=["q"]), "'q' is no state, accessory or output"),
+    (dict(free=[k], of=x, size=3), "chooses size= itself"),
+    (dict(free=[k], of=my.time, samples=3), "leave out samples="),
 ])
 def test_wrong_functions_are_refused(arguments, message):
     with pytest.raises(my.Error, match=message):

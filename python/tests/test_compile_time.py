@@ -3,6 +3,7 @@
 
 import math
 import pathlib
+import re
 import resource
 import shutil
 import subprocess
@@ -14,7 +15,7 @@ import pytest
 import example_models
 import myriad_ode as my
 from myriad_ode.kernels import compiler, nvrtc
-from myriad_ode.symbolic.operations import cost
+from myriad_ode.symbolic.operations import cost, operations
 from test_gpu import network
 
 pytestmark = [pytest.mark.long, pytest.mark.as_users_compile]
@@ -107,11 +108,26 @@ def test_a_network_of_twelve_does_not_take_minutes_to_compile(tmp_path, monkeypa
     cpu_seconds(network(), tmp_path, monkeypatch, limit=5 * small)
 
 
-def test_large_right_hand_sides_are_called_and_small_ones_copied():
-    assert "large_rhs = true" in network().cpp()
-    assert [make.__name__ for make in example_models.headers if "large_rhs" in make().cpp()] == []
+def test_models_say_how_many_instructions_their_right_hand_side_takes():
+    def weight(model):
+        return int(re.search(r"static constexpr int rhs_weight = (\d+);", model.cpp())[1])
+
+    assert weight(network()) > 150  # which is called in packs, and on a GPU
+    assert max(weight(make()) for make in example_models.headers) <= 150
     x, y = my.states("x y")
     assert cost([x * y + my.sin(x), my.sin(x) - 1]) == 18  # shared subexpressions once
+    assert weight(my.model({x: x * y + my.sin(x), y: my.sin(x) - 1})) == 18
     chain = my.states([f"c{i}" for i in range(100)])
     rows = {c: before - c * c * c for before, c in zip(np.roll(np.array(chain), 1), chain)}
-    assert "large_rhs" in my.model(rows).cpp()
+    assert weight(my.model(rows)) > 150
+
+
+def test_python_counts_the_instructions_of_functions_as_cpp_does():
+    source = pathlib.Path(__file__).resolve().parents[2]
+    text = (source / "include/myriad/kernel/scalar/dependence.hpp").read_text(encoding="utf-8")
+    counted = re.search(r"struct instructions \{(.*?)\n\};", text, re.S)[1]
+    of_cpp = {name: int(number) for name, number in re.findall(r"(\w+) = (\d+)", counted)}
+    both = {name.partition(".")[0]: 2 * known.instructions if name.startswith("sincos") else known.instructions
+            for name, known in operations.items()}
+    assert {name: both.get(name, 1) for name in of_cpp} == of_cpp
+    assert len(of_cpp) > 30

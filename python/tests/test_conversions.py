@@ -24,22 +24,25 @@ def test_to_xarray_keeps_components_with_names_of_its_own(model):
     pytest.importorskip("xarray")
     run = solve(model, samples=dict(states="time", evenly=3))
     data = run.to_xarray()
-    assert dict(data.sizes) == {"phase_": 2, "t_start_": 3, "sample": 3}
-    assert np.array_equal(data["t_start_"], [0.0, 0.5, 1.0]) and (data["t_start"] == 7).all()
-    assert np.array_equal(data["time"].values.ravel(), run.sample_times.ravel())
-    assert np.array_equal(data["time_"].values.ravel(), run["time"].ravel())
+    assert dict(data.sizes) == {"parameter_phase": 2, "state_t_start": 3, "sample": 3}
+    assert np.array_equal(data["state_t_start"], [0.0, 0.5, 1.0]) and (data["accessory_t_start_end"] == 7).all()
+    assert np.array_equal(data["t_sample"].values.ravel(), run.t_sample.ravel())
+    assert np.array_equal(data["time_sample"].values.ravel(), run["time"].ravel())
 
 
 def test_to_pandas_keeps_a_parameter_called_phase(model):
     pytest.importorskip("pandas")
     frame = solve(model, record="time", phases=2).to_pandas()
-    assert list(frame["phase"]) == [0, 1] * 6 and list(frame["phase_"]) == [1.0] * 6 + [2.0] * 6
-    assert np.allclose(frame["time_"], 3 * frame["phase_"] * (1 + frame["phase"]))
+    assert list(frame["phase"]) == [0, 1] * 6 and list(frame["parameter_phase"]) == [1.0] * 6 + [2.0] * 6
+    assert np.allclose(frame["time"], 3 * frame["parameter_phase"] * (1 + frame["phase"]))
 
 
 def test_records_of_a_state_called_t(model):
     run = solve(model, record=dict(states="t", time=True), phases=2)
-    assert np.allclose(run["t"][:3], [[1, 2], [1.5, 2.5], [2, 3]]) and (run[my.time] == 1).all()
+    for key in ("state_t", my.state("t")):
+        assert np.allclose(run[key][:3], [[1, 2], [1.5, 2.5], [2, 3]])
+    assert (run[my.time] == 1).all() and (run["t"] == 1).all()
+    assert np.allclose(solve(model, phases=2)["t"][:3], [2, 2.5, 3])  # where no times are kept
 
 
 @pytest.mark.parametrize("value", [2.7, 2**40, float("nan"), float("inf")])

@@ -18,7 +18,7 @@ variance = 49 / 8 + 0.1 * np.pi**4 / 5 + 0.01 * np.pi**8 / 18 + 0.5
 first = {"a": 0.5 * (1 + 0.1 * np.pi**4 / 5)**2 / variance, "b": 49 / 8 / variance, "c": 0}
 total = {"a": 1 - first["b"], "b": first["b"], "c": 8 * 0.01 * np.pi**8 / 225 / variance}
 
-simulate = my.batched(ishigami, by=[a, b, c], of=x, start={x: 0}, time=(0, 1), interpreted=True)
+simulate = my.batched(ishigami, free=[a, b, c], of=x, start={x: 0}, time=(0, 1), interpreted=True)
 
 
 def test_sobols_indices_of_ishigamis_function():

@@ -152,7 +152,7 @@ def test_names_must_be_as_many_as_components(oscillator):
 
 def test_what_was_not_asked_for(oscillator):
     run = my.solve(oscillator, **CALL)
-    with pytest.raises(KeyError, match="there is no 'y': the model has x, v, w"):
+    with pytest.raises(KeyError, match="'y' is no name of the results: there are x_end, v_end, t_last, status"):
         run["y"]
     with pytest.raises(my.Error, match="no samples were taken"):
-        _ = run.sample_times
+        _ = run.t_sample

@@ -202,7 +202,7 @@ def solved(motion, change):
         run = my.solve(model, {"factor": factors}, start=values,
                        time=(begin * change.time_unit + change.begin, end * change.time_unit + change.begin), **options)
         values = {name: np.array(run[name]) for name in names}
-    values["t"], values["status"] = np.array(run.t), [my.status_names[s] for s in run.status]
+    values["t"], values["status"] = np.array(run.t_last), list(run.status)
     values["size"] = size
     return values, crossings, factors
 

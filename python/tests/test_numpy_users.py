@@ -29,11 +29,14 @@ def solved(sweep=None, **options):
 
 def test_a_run_is_a_mapping_from_names_to_arrays():
     run = solved(record=dict(states=[x], time=True))
-    assert list(run) == list(run.keys()) == ["x", "v", "k", "t"] == run._ipython_key_completions_() and len(run) == 4
+    names = ["x", "t", "phase", "x_end", "v_end", "t_last", "status", "k", "x_start", "v_start", "t_begin", "t_end"]
+    assert sorted(run) == sorted(run.keys()) == sorted(names) == sorted(run._ipython_key_completions_())
+    assert len(run) == len(names)
     assert "x" in run and x in run and "z" not in run and 0 not in run and my.time in run
     assert run.get("z") is None and run.get("k") is not None and run.size == 2
-    assert {name: array.shape for name, array in run.items()} == {"x": (2, 1), "v": (2,), "k": (2,), "t": (2, 1)}
-    assert dict(run)["v"] is not None and run == run and run != solved() and isinstance(hash(run), int)
+    shapes = {name: array.shape for name, array in run.items()}
+    assert shapes["x"] == shapes["t"] == (2, 1) and shapes["v_end"] == shapes["k"] == run["v"].shape == (2,)
+    assert dict(run)["v_end"] is not None and run == run and run != solved() and isinstance(hash(run), int)
 
 
 def test_results_of_a_study_are_a_mapping():
@@ -77,10 +80,10 @@ def test_a_relative_tolerance_of_zero_leaves_the_error_to_the_absolute_one():
 def test_a_sweep_of_no_instance_has_empty_arrays(sweep):
     run = solved({"k": []}, phases=3, record=[x])
     assert run["x"].shape == (0, 3) and run["v"].shape == run["k"].shape == run.status.shape == (0,)
-    assert run["x"].dtype == float and run.size == 0 and run.t.shape == run.steps().shape == (0,)
+    assert run["x"].dtype == float and run.size == 0 and run.t_last.shape == run.accepted_steps.shape == (0,)
     assert run.report.by_status == {} and "0 instances" in str(run.report) and not run.failed.any()
     sampled = solved({"k": []}, samples=5)
-    assert sampled["x"].shape == sampled.sample_times.shape == (0, 5)
+    assert sampled["x"].shape == sampled.t_sample.shape == (0, 5)
     assert solved(my.grid({k: [], x: [1.0, 2.0]}), start={v: 0}).shape == (0, 2)
     assert solved({k: 1.0}, size=0)["x"].shape == (0,)
     assert run.to_xarray()["x"].shape == (0, 3) and len(run.to_pandas()) == 0

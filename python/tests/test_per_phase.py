@@ -86,7 +86,7 @@ def test_an_event_reads_what_is_computed_once():
     run = my.solve(model, {"share": [0.5, 1, 2]}, time=(0, 6), rtol=1e-10, samples=2001)
     for i, share in enumerate([0.5, 1, 2]):
         threshold = share * 0.7 * 0.4
-        at = np.interp(threshold, run["P"][i], run.sample_times[i])
+        at = np.interp(threshold, run["P"][i], run.t_sample[i])
         assert run["seen"][i, -1] == pytest.approx(at, rel=1e-5)
 
 
@@ -108,4 +108,5 @@ def test_divisions_stay_where_there_is_no_room_for_the_reciprocals():
     parts = [parameter(f"a{i}", 2) for i in range(count)] + [variable(f"x{i}", 1) for i in range(count)]
     model = my.read_sbml(document([*parts, *(rate(f"x{i}", f"-x{i} / a{i}") for i in range(count))]))
     made = prepared(model)
-    assert len(made.accessories) == count - 5 and cost(made.rhs) == cost(model.rhs)
+    assert len(made.accessories) == count - 5
+    assert cost(made.rhs) == cost(model.rhs) - 7 * (count - 5)  # a multiplication takes 1 instruction, a division 8

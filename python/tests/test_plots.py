@@ -91,8 +91,8 @@ class ARun:
         self.sweep, self.size = sweep, sweep.size
         self.records, self.samples, self.final = dict(records), dict(samples), dict(final)
         self.failed = np.zeros(self.size, bool)
-        self.status = np.ones(self.size, np.uint8)
-        self.sample_times = np.tile(np.arange(3.0), (self.size, 1))
+        self.status_codes = np.ones(self.size, np.uint8)
+        self.t_sample = np.tile(np.arange(3.0), (self.size, 1))
         self.units, self.time_unit = {"x": "mol"}, ""
 
     def __getitem__(self, name):

@@ -32,7 +32,7 @@ def test_extrema_and_integrals_of_smooth_solutions_have_derivatives(method):
         area: my.integral(x * x + my.time)}, name="spring_summaries")
     at, end = np.array([2.0, 1.0, 0.5]), 1.2  # k, x0, v0
     run = my.solve(spring, {k: at[0]}, start={x: at[1], v: at[2]}, time=(0, end), method=method,
-                   sensitivities=[k, x, v], **tight)
+                   free=[k, x, v], **tight)
     t, weight = np.polynomial.legendre.leggauss(40)
     t, weight = end * (t + 1) / 2, end * weight / 2
 
@@ -55,7 +55,7 @@ summaries = {peak: my.phase_maximum(v), dip: my.phase_minimum(v), level: my.phas
 def test_extrema_and_integrals_that_events_cut_have_derivatives():
     ball = my.model({x: v, v: -g}, accessories={**summaries, when: my.integral(v)}, events=bounce, name="ball_sums")
     at, end = np.array([0.8, 9.81, 1.0]), 0.9  # r, g, x0; up in the second flight
-    run = my.solve(ball, {r: at[0], g: at[1]}, start={x: at[2], v: 0}, time=(0, end), sensitivities=[r, g, x], **tight)
+    run = my.solve(ball, {r: at[0], g: at[1]}, start={x: at[2], v: 0}, time=(0, end), free=[r, g, x], **tight)
 
     def first(g, x0):
         return np.sqrt(2 * x0 / g)
@@ -86,7 +86,7 @@ def test_summaries_of_phases_that_events_begin_and_end_have_derivatives():
                     events=my.event(x, direction="falling", do={v: -r * v, my.end_phase: True}), name="ball_phases")
     at = np.array([0.8, 9.81, 1.0])
     run = my.solve(ball, {r: at[0], g: at[1]}, start={x: at[2], v: 0}, time=(0, 10), phases=2, carry_on=True,
-                   record=dict(accessories=[peak, dip, level, area, when]), sensitivities=[r, g, x], **tight)
+                   record=dict(accessories=[peak, dip, level, area, when]), free=[r, g, x], **tight)
 
     def speed(r, g, x0):
         return r * np.sqrt(2 * g * x0)
@@ -114,15 +114,15 @@ def test_a_threshold_is_a_parameter_of_an_event():
 
     end = 3.0
     run = my.solve(model, {k: at[0], c: at[1], r: at[3]}, start={x: at[2], v: 0}, time=(0, end),
-                   sensitivities=[k, c, x, r], **tight)
+                   free=[k, c, x, r], **tight)
     np.testing.assert_allclose([run[x][0], run[v][0]], after(*at), rtol=1e-9)
     np.testing.assert_allclose([run.sensitivity[x][0], run.sensitivity[v][0]], by_differences(after, at), rtol=1e-7)
 
 
 def test_a_phase_that_a_stop_ends_has_the_derivative_of_its_time():
     model = my.model({x: -k * x}, stops=my.stop(r, do={my.end_phase: True}), name="stopped")
-    run = my.solve(model, {k: 0.5, r: 1.5}, start={x: 2}, time=(0, 10), sensitivities=[k, r], **tight)
-    assert run.t[0] == pytest.approx(1.5)
+    run = my.solve(model, {k: 0.5, r: 1.5}, start={x: 2}, time=(0, 10), free=[k, r], **tight)
+    assert run.t_last[0] == pytest.approx(1.5)
     np.testing.assert_allclose(run.sensitivity[my.time][0], [0, 1], atol=1e-12)
     value = 2 * np.exp(-0.75)
     np.testing.assert_allclose(run.sensitivity[x][0], [-1.5 * value, -0.5 * value], rtol=1e-8)
@@ -135,7 +135,7 @@ def test_the_ends_of_the_time_domain_have_derivatives_through_an_event(method):
     model = my.model({x: my.cos(my.time), v: x}, accessories={when: 0, area: my.integral(my.time * x)}, events=my.event(
         x - c, direction="rising", do={x: r * x + my.time / 10, when: my.time}), name="domain")
     at, call = np.array([0.3, 2.2]), {"start": {x: 0.5, v: 0.1}, "method": method, "rtol": 1e-10, "atol": 1e-10}
-    run = my.solve(model, {c: 1.0, r: 0.2}, time=tuple(at), sensitivities=[my.t_begin, c, my.t_end], **call)
+    run = my.solve(model, {c: 1.0, r: 0.2}, time=tuple(at), free=[my.t_begin, c, my.t_end], **call)
 
     def closed(begin, end, kind):
         up = np.arcsin(0.5 + np.sin(begin))  # where x is 1
@@ -156,7 +156,7 @@ def test_the_ends_of_the_time_domain_have_derivatives_through_an_event(method):
         expected = by_differences(lambda begin, end, kind=kind: closed(begin, end, kind), at)
         found = [run.sensitivity[kind, my.t_begin][0], run.sensitivity[kind, "t_end"][0]]
         np.testing.assert_allclose(found, expected, rtol=1e-7, atol=1e-9)
-    assert run.sensitivity.by == ["t_begin", "c", "t_end"]
+    assert run.sensitivity.free == ["t_begin", "c", "t_end"]
     np.testing.assert_array_equal(run.sensitivity[my.time], [[0, 0, 1]])
     if method == "tsitouras_5":  # and against differences of the numerical solution
         d = 2e-3
@@ -176,7 +176,7 @@ def test_initial_values_that_follow_from_the_begin_have_its_derivative():
     model = my.read_sbml(sbml.document([
         sbml.compartment("c"), sbml.species("A", concentration=1.0), sbml.parameter("k", 0.5),
         sbml.initially("A", "k * (1 + time^2)"), sbml.reaction("loss", "A ->", "k * A * c")]))
-    run = my.solve(model, {"k": 0.5}, time=(0.5, 2), sensitivities=[my.t_begin, "k"], **tight)
+    run = my.solve(model, {"k": 0.5}, time=(0.5, 2), free=[my.t_begin, "k"], **tight)
     decay = np.exp(-0.75)
     np.testing.assert_allclose(run.sensitivity["A"][0], [0.5 * decay * (1 + 0.5 * 1.25), 1.25 * decay * (1 - 0.75)],
                                rtol=1e-8)
@@ -188,7 +188,7 @@ def test_outputs_that_read_the_time_move_with_the_end_of_recorded_phases():
 
     model = my.read_sbml(sbml.document([sbml.variable("x", 1), sbml.parameter("k", 0.5), sbml.rate("x", "-k * x"),
                                         sbml.variable("r"), sbml.always("r", "x * time")]))
-    call = {"time": (0, 2), "sensitivities": [my.t_end, "k"], **tight}
+    call = {"time": (0, 2), "free": [my.t_end, "k"], **tight}
     expected = np.exp(-1) * np.array([1 - 0.5 * 2, -2 * 2])  # of x t = t exp(-k t)
     np.testing.assert_allclose(my.solve(model, **call).sensitivity["r"][0], expected, rtol=1e-8, atol=1e-9)
     run = my.solve(model, record={"states": ["x"], "time": True}, **call)
@@ -203,10 +203,10 @@ def test_outputs_that_read_the_time_move_with_the_end_of_recorded_phases():
 ])
 def test_other_times_are_refused(by, message):
     with pytest.raises(my.Error, match=message):
-        my.solve(my.model({x: -k * x}), {k: 1}, start={x: 1}, time=(0, 1), sensitivities=by)
+        my.solve(my.model({x: -k * x}), {k: 1}, start={x: 1}, time=(0, 1), free=by)
 
 
 def test_a_component_with_the_name_of_an_end_is_refused():
     begin = my.parameter("t_begin")
     with pytest.raises(my.Error, match="the model has a component 't_begin'.*rename it"):
-        my.solve(my.model({x: -begin * x}), {begin: 1}, start={x: 1}, time=(0, 1), sensitivities=[my.t_begin])
+        my.solve(my.model({x: -begin * x}), {begin: 1}, start={x: 1}, time=(0, 1), free=[my.t_begin])

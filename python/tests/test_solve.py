@@ -16,9 +16,9 @@ def test_end_values_are_those_of_the_closed_form(oscillator):
     assert run.report.by_status == {"success": 37}
     np.testing.assert_allclose(run["x"], np.cos(10 * w), rtol=0, atol=1e-8)
     np.testing.assert_allclose(run["v"], -w * np.sin(10 * w), rtol=0, atol=2e-8)
-    np.testing.assert_array_equal(run.t, 10)
+    np.testing.assert_array_equal(run.t_last, 10)
     np.testing.assert_array_equal(run["w"], w)
-    assert run.steps().sum() == run.report.accepted_steps > 0
+    assert run.accepted_steps.sum() == run.report.accepted_steps > 0
     assert 0 < run.report.compile_seconds < run.report.total_seconds and run.report.kernel_seconds == 0  # a GPU's
 
 
@@ -44,7 +44,7 @@ def test_threads_and_order_change_no_bit(oscillator):
 def test_own_times_and_backwards(oscillator):
     end = np.linspace(-1, -2, 37)
     run = my.solve(oscillator, {"w": w}, start={"x": np.cos(w), "v": 0.0}, time=(0, end), rtol=1e-10)
-    np.testing.assert_array_equal(run.t, end)
+    np.testing.assert_array_equal(run.t_last, end)
     np.testing.assert_allclose(run["x"], np.cos(w) * np.cos(w * end), atol=1e-7)
 
 
@@ -70,8 +70,8 @@ def test_phases_may_begin_with_the_step_of_the_last_one(oscillator):
 def test_samples(oscillator):
     run = my.solve(oscillator, {"w": w}, start=start, time=(0, 4), samples=9, rtol=1e-10)
     assert run["x"].shape == (37, 9)
-    np.testing.assert_allclose(run.sample_times, np.tile(np.linspace(0, 4, 9), (37, 1)))
-    np.testing.assert_allclose(run["x"], np.cos(w[:, None] * run.sample_times), atol=1e-6)
+    np.testing.assert_allclose(run.t_sample, np.tile(np.linspace(0, 4, 9), (37, 1)))
+    np.testing.assert_allclose(run["x"], np.cos(w[:, None] * run.t_sample), atol=1e-6)
     own = np.sort(np.random.default_rng(1).uniform(0, 4, (37, 3)), axis=1)
     run = my.solve(oscillator, {"w": w}, start=start, time=(0, 4), rtol=1e-10, samples=dict(states=["v"], times=own))
     np.testing.assert_array_equal(run.stored_samples, 3)
@@ -83,14 +83,14 @@ def test_single_precision_and_fixed_steps(oscillator):
     run = my.solve(oscillator, {"w": w}, start=start, time=(0, 1), step=1e-2, method="runge_kutta_4", precision="float")
     assert run["x"].dtype == np.float32
     np.testing.assert_allclose(run["x"], np.cos(w), atol=1e-5)
-    assert (run.steps() == 100).all()
+    assert (run.accepted_steps == 100).all()
 
 
 def test_control_and_tolerances_per_instance(oscillator):
     coarse_to_fine = np.geomspace(1e3, 1, 37)
     run = my.solve(oscillator, {"w": np.ones(37)}, start=start, time=(0, 10), rtol=1e-10, atol={"x": 1e-10, "v": 1e-9},
                    control=("pi_control", "tolerance_per_instance"), tolerance_scale=coarse_to_fine)
-    steps = run.steps()
+    steps = run.accepted_steps
     assert steps[0] < steps[18] < steps[36]
 
 
@@ -110,7 +110,7 @@ def test_events_hooks_and_accessories(ball):
     stopped = my.solve(ball, {"loss": loss, "g": 2.0}, start={"height": 1, "speed": 0}, time=(0, 9),
                        events={"impact": dict(stop_after=1)})
     assert stopped.report.by_status == {"stopped_by_event": 8}
-    np.testing.assert_allclose(stopped.t, 1, atol=1e-6)
+    np.testing.assert_allclose(stopped.t_last, 1, atol=1e-6)
 
 
 def test_failures_have_statuses(oscillator):
@@ -119,7 +119,7 @@ def test_failures_have_statuses(oscillator):
     run = my.solve(oscillator, {"w": bad}, start=start, time=(0, 1), invalid="mark")
     assert run.report.by_status == {"success": 36, "invalid_input": 1}
     assert np.flatnonzero(run.failed).tolist() == [5]
-    assert my.status_names[run.status[5]] == "invalid_input"
+    assert run.status[5] == "invalid_input"
     run = my.solve(oscillator, {"w": w}, start=start, time=(0, 1000), max_steps=50)
     assert run.report.by_status == {"max_steps": 37}
     assert "first failure: instance 0 ended as max_steps" in str(run.report)
@@ -131,7 +131,7 @@ def test_xarray_and_pandas(oscillator):
     assert data.x.dims == ("instance", "phase") and data.phase.values.tolist() == [1, 2]
     np.testing.assert_array_equal(data.x, run["x"])
     np.testing.assert_array_equal(data.w, w)
-    assert data.status.attrs["flag_meanings"].split()[1] == "success" and (data.status == 1).all()
+    assert (data.status == "success").all()
     frame = run.to_pandas()
     assert len(frame) == 2 * 37 and set(frame) == {"instance", "phase", "w", "x", "status"}
     np.testing.assert_array_equal(frame[frame.phase == 2].x, run["x"][:, 1])
@@ -156,7 +156,7 @@ def test_a_grid_is_unstacked_to_its_axes(oscillator):
                    phases=2, record=["x"])
     assert run.shape == (3, 2) and run["x"].shape == (6, 2)
     data = run.to_xarray()
-    assert data.x.dims == ("w", "x_start", "phase") and data.v.dims == ("w", "x_start")
+    assert data.x.dims == ("w", "x_start", "phase") and data.v_end.dims == ("w", "x_start")
     np.testing.assert_array_equal(data.w, speeds)
     np.testing.assert_array_equal(data.x_start, places)
     np.testing.assert_allclose(data.x.sel(w=1.5, x_start=0.5)[0], 0.5 * np.cos(1.5), atol=1e-8)
@@ -166,7 +166,7 @@ def test_shared_values_of_a_grid_and_a_zip(ball):
     run = my.solve(ball, my.grid(my.zip(loss=[0.5, 0.6], height=[1.0, 2.0]), g=2.0), start={"speed": 0},
                    time=(0, 0.1))
     data = run.to_xarray()
-    assert data.height.dims == ("instance",) and float(data.g) == 2.0
+    assert data.height_end.dims == ("instance",) and float(data.g) == 2.0
     np.testing.assert_array_equal(data.height_start, [1.0, 2.0])
     np.testing.assert_array_equal(data.loss, [0.5, 0.6])
     with pytest.raises(my.Error, match="'g' is shared by all instances and has 2 values"):
@@ -184,7 +184,7 @@ def test_traced_models_have_the_bits_of_written_ones(oscillator):
 
 def test_samples_are_as_accurate_as_the_steps(oscillator):
     run = my.solve(oscillator, {"w": [1.0]}, start={"x": 1, "v": 0}, time=(0, 6), samples=200, rtol=1e-7, atol=1e-7)
-    error = np.abs(run["x"] - np.cos(run.sample_times)).max()
+    error = np.abs(run["x"] - np.cos(run.t_sample)).max()
     assert error < 1e-6  # 4e-6 with cash_karp
 
 
@@ -195,7 +195,7 @@ def test_a_time_limit_ends_what_takes_for_ever(oscillator, schedule):
     call = dict(start=start, max_steps=2_000_000_000, phases=2, schedule=schedule)
     run = my.solve(oscillator, {"w": 1}, time=(0, end), time_limit=0.3, **call)
     assert run.report.by_status == {"success": 49, "interrupted": 1} and run.report.seconds < 8
-    assert my.status_names[run.status[20]] == "interrupted" and 0 < run.t[20] < 1e12 and np.isfinite(run["x"]).all()
+    assert run.status[20] == "interrupted" and 0 < run.t_last[20] < 1e12 and np.isfinite(run["x"]).all()
     assert "interrupted: time_limit = 0.3 s was over" in run.report.notes and "note: interrupted" in str(run.report)
     for wrong in (-1, float("nan"), "soon"):
         with pytest.raises(my.Error, match="time_limit"):
@@ -213,7 +213,7 @@ def test_notes_say_what_ended_instances(oscillator):
 
 def test_the_default_first_step_follows_from_the_slope(oscillator):
     run = my.solve(oscillator, {"w": 100}, start=start, time=(0, 10), max_steps=1)
-    np.testing.assert_allclose(run.t, 2 * 1e-8**0.2 / 1e4)  # of v, whose slope is -10 000
+    np.testing.assert_allclose(run.t_last, 2 * 1e-8**0.2 / 1e4)  # of v, whose slope is -10 000
 
 
 def test_the_default_first_step_is_one_that_time_resolves(oscillator):

@@ -66,9 +66,9 @@ def test_gradients_of_a_model_that_jumps_by_its_state_are_refused_with_a_cure():
         lambda: my.least_squares(falling, data, free={c: (0.1, 1.0)}, start={x: 1.0}).gradient([0.5]),
         lambda: my.least_squares(falling, data, free={c: (0.1, 1.0)}, start={x: 1.0}).jacobian([0.5]),
         lambda: my.least_squares(falling, data, free={c: (0.1, 1.0)}, start={x: 1.0}, adjoint=True),
-        lambda: my.batched(falling, by=[c], of=[x], start={x: 1.0}, time=(0, 1)).with_jacobian([0.5]),
-        lambda: my.batched(falling, by=[c], of=[x], start={x: 1.0}, time=(0, 1)).vjp([0.5], [1.0]),
-        lambda: my.batched(falling, by=[c], of=[x], start={x: 1.0}, time=(0, 1), adjoint=True),
+        lambda: my.batched(falling, free=[c], of=[x], start={x: 1.0}, time=(0, 1)).with_jacobian([0.5]),
+        lambda: my.batched(falling, free=[c], of=[x], start={x: 1.0}, time=(0, 1)).vjp([0.5], [1.0]),
+        lambda: my.batched(falling, free=[c], of=[x], start={x: 1.0}, time=(0, 1), adjoint=True),
     ]
     for call in refused:
         with pytest.raises(my.Error, match=why):
@@ -77,7 +77,7 @@ def test_gradients_of_a_model_that_jumps_by_its_state_are_refused_with_a_cure():
 
 def test_jax_refuses_to_differentiate_what_jumps_by_its_state():
     jax = pytest.importorskip("jax")
-    function = my.batched(my.model({x: my.where(x > c, -2.0, -1.0)}), by=[c], of=[x], start={x: 1.0},
+    function = my.batched(my.model({x: my.where(x > c, -2.0, -1.0)}), free=[c], of=[x], start={x: 1.0},
                           time=(0, 1)).to_jax()
     with pytest.raises(my.Error, match="the equations jump where `x > c` changes"):
         jax.grad(lambda theta: function(theta)[0])(np.array([0.5]))

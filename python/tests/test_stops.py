@@ -51,7 +51,7 @@ def test_times_are_listed_and_what_happens_differs():
     run = contents(model, interval=1.5, ke=0.75)
     expected = np.exp(-1.2 * 9) + np.exp(-1.2 * 7) + np.exp(-1.2 * 6)
     np.testing.assert_allclose(run["gut"], expected, rtol=1e-7)
-    assert run["ke"] == 0
+    assert run["ke_end"] == 0 and run["ke"] == 0.75
 
 
 def test_a_stop_ends_the_phase():

@@ -38,7 +38,7 @@ def test_closed_form(method, tolerance):
     w = np.linspace(1, 2, 19)
     run = my.solve(oscillator(), {"w": w}, start={"x": 1, "v": 0}, time=(0, 3), rtol=1e-10, atol=[1e-10, 1e-10],
                    step=0.01, method=method, samples=5, interpreted=True)
-    np.testing.assert_allclose(run["x"], np.cos(w[:, None] * run.sample_times), atol=tolerance)
+    np.testing.assert_allclose(run["x"], np.cos(w[:, None] * run.t_sample), atol=tolerance)
     np.testing.assert_allclose(run.states["v"], -w * np.sin(3 * w), atol=2 * tolerance)
 
 

@@ -34,7 +34,7 @@ def test_a_short_pulse_is_not_passed_over():
         run = my.solve(model, {T: starts}, start={x: 0}, time=(begin, end), rtol=1e-8)
         at_end = 1e5 * (np.exp(-0.01 * (end - starts - 1e-3)) - np.exp(-0.01 * (end - starts)))
         np.testing.assert_allclose(run["x"], np.sign(end - begin) * at_end, rtol=1e-6)
-        assert run.steps("accepted").max() < 100
+        assert run.accepted_steps.max() < 100
 
 
 @pytest.mark.parametrize("wave", [
@@ -180,7 +180,7 @@ def test_a_model_shows_its_equations_as_they_were_written():
 
 def test_derivatives_by_the_time_of_a_jump_are_those_of_a_closed_form():
     run = my.solve(infused((t > T) & (t < T + 1)), {k: rates, T: 9.0}, start={x: 0}, time=(0, 20),
-                   sensitivities=[T, k], **tight)
+                   free=[T, k], **tight)
     h = 1e-6
     np.testing.assert_allclose(run["x_by_T"], (after([9 + h], 20) - after([9 - h], 20)) / (2 * h), rtol=1e-7)
     np.testing.assert_allclose(run["x_by_k"], (after([9.0], 20, rate=rates + h) - after([9.0], 20, rate=rates - h)) /
@@ -200,7 +200,7 @@ def test_jumps_at_one_time_each_contribute_the_derivative_of_their_own_time(prec
              period: np.array([0.1, 0.15, 0.15]), a: 0.05, b: 0.05}  # 3 * 0.1 is a rounding later than 0.3
     end, tolerance = 0.38, max(1e-3 * error, 1e-6 if precision == "float" else 0)
     run = my.solve(model, given, start={x: 0, nested: 0, level: 0, z: 0}, time=(0, end), precision=precision,
-                   rtol=tolerance, atol=tolerance, device="cpu", sensitivities=[T, c, period, a, b, dose])
+                   rtol=tolerance, atol=tolerance, device="cpu", free=[T, c, period, a, b, dose])
     s, near = run.sensitivity, {"rtol": error, "atol": error}
     pulse_count, level_sum = np.array([4, 3, 3]), np.array([1 + 2 + 3, 1 + 2, 1 + 2])
     nothing = np.zeros(3)
@@ -227,7 +227,7 @@ def test_an_adjoint_goes_back_through_jumps(method):
     model = my.model({x: where(t % 10 < 1, height - k * x * x, -k * x * x)}, events=my.event(x - 0.9, do={x: 0.5 * x}),
                      stops=my.stop(5.5, do={x: x + height}))
     at = np.array([[0.1, 1.0, 0.0], [0.2, 1.5, 0.3]])
-    call = dict(by=[k, height, x], of=x, time=(0, 24), samples=[0.5, 10.5, 24.0], method=method, device="cpu",
+    call = dict(free=[k, height, x], of=x, time=(0, 24), samples=[0.5, 10.5, 24.0], method=method, device="cpu",
                 sensitivity_control=False, **tight)
     found, expected = (my.batched(model, adjoint=adjoint, **call).vjp(at, np.ones((2, 3, 1)))
                        for adjoint in (True, False))
@@ -243,7 +243,7 @@ def test_an_adjoint_goes_back_through_jumps(method):
      "the event 'hit' changes when the equations jump")])
 def test_an_adjoint_refuses_jumps_at_times_that_move(model, why):
     with pytest.raises(my.Error, match=f"{why}.*leave out adjoint=True"):
-        my.batched(model, by=[k, T], of=x, start={"x": 0, **({"clock": 0} if "clock" in model.states else {})},
+        my.batched(model, free=[k, T], of=x, start={"x": 0, **({"clock": 0} if "clock" in model.states else {})},
                    time=(0, 9), adjoint=True)
 
 

@@ -122,8 +122,9 @@ def test_an_action_that_waits_is_dropped_where_its_condition_ceases_to_hold(inte
 def test_more_actions_than_there_is_room_for_end_the_instance(interpreted):
     wave = my.trigger(my.sin(np.pi * my.time) > 0, do={count: count + 1}, delay=lag, room=2)
     run = after(ramp(wave), to=11.9, values={"lag": np.array([3.5, 5.5])}, interpreted=interpreted)
-    assert [my.status_names[s] for s in run.status] == ["success", "queue_overflow"]
-    assert run["count"][0] == 5 and run.t[1] == pytest.approx(4)  # triggered every 2, from 0 on, where the sine rises
+    assert list(run.status) == ["success", "queue_overflow"]
+    assert run["count"][0] == 5
+    assert run.t_last[1] == pytest.approx(4)  # triggered every 2, from 0 on, where the sine rises
 
 
 def test_values_from_the_time_of_the_trigger_are_numbers_and_conditions():
@@ -131,7 +132,7 @@ def test_values_from_the_time_of_the_trigger_are_numbers_and_conditions():
     model = ramp(my.trigger(x > 1, do=values, delay=2, values_from_trigger_time=True, room=1))
     run = after(model)
     assert run["count"] == 5 and run["log"] == 2 and run["y"] == 3
-    assert run.t == pytest.approx(3) and my.status_names[run.status[0]] == "stopped_by_user"
+    assert run.t_last == pytest.approx(3) and run.status[0] == "stopped_by_user"
 
 
 @pytest.mark.parametrize("priorities, expected", [((None, None), 12), ((None, -5), 21), ((2, 3), 21), ((lag, 2), 12)])
@@ -238,17 +239,20 @@ def test_tangents_of_a_model_with_triggers_are_those_of_events_or_are_refused():
         my.with_tangents(ramp(my.trigger((x > 1) & (y > 1), do={y: 1})))
 
 
-def test_triggers_have_the_derivatives_of_differences():
-    """Of a crossing and of a time that is a parameter, after a delay that is one, and of what an action makes hold."""
+@pytest.mark.parametrize("lag", ["with a delay", None])
+def test_triggers_have_the_derivatives_of_differences(lag):
+    """Of a crossing and of a time that is a parameter, after a delay that is one, of what an action makes hold, and of
+    two triggers of one crossing, of which the first moves the state away from it."""
     a, b, c, T = (my.parameter(name) for name in "abcT")
     z = my.state("z")
     model = my.model({x: a, y: x, z: -b * z}, triggers=[
-        my.trigger(x > c, delay=b * T, do={x: 0.5 * x, y: y + x * T}),
+        my.trigger(x > c, delay=b * T if lag else None, do={x: 0.5 * b, y: y + x * T}),
+        my.trigger(x > c, do={z: z + 0.1 * my.time}),
         my.trigger((my.time > T) & (x > 0), do={z: z + c}),
         my.trigger(z > 1.4, do={z: z * b})])
     values = {a: 1.0, b: 0.7, c: 1.0, T: 0.8}
-    options = dict(start={x: 0.3, y: 1.0, z: 1.0}, time=(0, 2.0), rtol=1e-11, atol=1e-12)
-    found = my.solve(model, values, sensitivities=[a, b, c, T], **options)
+    options = dict(start={x: 0.3, y: 1.0, z: 1.0}, time=(0, 1.9), rtol=1e-11, atol=1e-12)
+    found = my.solve(model, values, free=[a, b, c, T], **options)
     for k in values:
         above, below = (my.solve(model, {**values, k: values[k] + step}, interpreted=True, **options)
                         for step in (1e-6, -1e-6))

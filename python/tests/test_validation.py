@@ -75,7 +75,7 @@ def check(name, method, runs):
         errors.append({c: np.abs(run[c][examined] - known[c]) for c in known if c not in problem.counts})
     events = problem.growth * problem.events_per_instance * problem.event_tolerance
     for run, tolerance, error in zip(runs, tolerances, errors):
-        steps = run.steps()[examined]
+        steps = run.accepted_steps[examined]
         bound = problem.growth * steps * 2.3e-16 + events + problem.reference_error
         for c, found in error.items():
             size = np.maximum(1, np.abs(known[c]))
@@ -114,7 +114,7 @@ def test_a_gpu_agrees_with_the_cpu(name, method, solved):
     problem, gpu = made[name], solved[name, method].result()[1]
     cpu = solve(name, method, tolerances[1], device="cpu")
     assert np.array_equal(cpu.status, gpu.status)
-    bound = 2 * problem.growth * cpu.steps() * problem.error_of_a_step * tolerances[1]
+    bound = 2 * problem.growth * cpu.accepted_steps * problem.error_of_a_step * tolerances[1]
     for c, values in {**cpu.states, **cpu.accessories}.items():
         if values.dtype.kind == "i":
             assert np.array_equal(values, gpu[c]), c

@@ -95,7 +95,7 @@ def test_signs_of_events_and_the_end_of_a_run():
                  samples=None)
     assert run["up"][0] == 1 and run["down"][0] == 1
     run = solved("x'=1\nglobal 1 {x-0.7} {arret=1}", samples=None)
-    assert my.status_names[run.status[0]] == "stopped_by_user"
+    assert run.status[0] == "stopped_by_user"
     np.testing.assert_allclose(run["x"], 0.7)
 
 

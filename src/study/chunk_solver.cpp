@@ -183,7 +183,7 @@ void host_solver<R>::copy(const quantity& what, std::byte* to) const {
             return transpose(s.component(c.number), size, inner, to);
         case origin::sample_time:
             return transpose(s.time.data(), size, inner, to);
-        case origin::samples_stored:
+        case origin::stored_samples:
             return transpose(s.stored.data(), size, 1, to);
         case origin::end:
             return with_array(c.kind, data,

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <utility>
 
+#include "myriad/host/backend/arrays.hpp"
 #include "myriad/study/kinds.hpp"
 
 namespace myriad::studies::inline MYRIAD_ABI {
@@ -37,8 +38,16 @@ bool is_time(component_kind kind) { return kind == component_kind::t_begin || ki
 
 /// Names that results use for something else.
 bool is_reserved(std::string_view name) {
-    constexpr std::string_view reserved[] = {"instance", "phase", "sample", "bin", "status", "t", "stored"};
-    return std::find(std::begin(reserved), std::end(reserved), name) != std::end(reserved);
+    constexpr std::string_view reserved[] = {"instance", "phase",  "sample",         "bin",
+                                             "draw",     "chunk",  "status",         "t",
+                                             "t_sample", "t_last", "stored_samples", "phases_done"};
+#define MYRIAD_QUOTED(name, ...) #name,
+    constexpr std::string_view counters[] = {MYRIAD_COUNTERS(MYRIAD_QUOTED)};
+#undef MYRIAD_QUOTED
+    const auto is_among = [&](const auto& names) {
+        return std::find(std::begin(names), std::end(names), name) != std::end(names);
+    };
+    return is_among(reserved) || is_among(counters);
 }
 
 }  // namespace
@@ -52,6 +61,7 @@ component_names::component_names(std::string model, std::vector<component> all)
     : model_(std::move(model)), all_(std::move(all)) {
     for (const component_kind end : {component_kind::t_begin, component_kind::t_end})
         all_.push_back({end, 0, name_of(end)});
+    for (const component& c : all_) ++uses_[c.name];
 }
 
 const component& component_names::find(std::string_view name, std::initializer_list<component_kind> kinds) const {
@@ -74,18 +84,23 @@ const component& component_names::find(std::string_view name, std::initializer_l
     return *found[0];
 }
 
+bool component_names::is_taken(std::string_view name) const {
+    const auto is_of_another = [&](std::string_view ending) {
+        return name.ends_with(ending) && uses_.contains(name.substr(0, name.size() - ending.size()));
+    };
+    return is_reserved(name) || is_of_another("_start") || is_of_another("_end") || is_of_another("_sample");
+}
+
 std::string component_names::variable(const component& c) const {
     if (is_time(c.kind)) return name_of(c.kind);
-    const auto has_name = [&](const component& other) { return other.name == c.name; };
-    if (!c.name.empty() && !is_reserved(c.name) && std::count_if(all_.begin(), all_.end(), has_name) == 1)
-        return c.name;
+    if (!c.name.empty() && !is_taken(c.name) && uses_.at(c.name) == 1) return c.name;
     std::string full = c.full_name();
     std::replace(full.begin(), full.end(), '.', '_');
     return full;
 }
 
 std::string component_names::initial_variable(const component& c) const {
-    return variable(c) + (among(recorded_kinds, c.kind) ? "_begin" : "");
+    return variable(c) + (among(recorded_kinds, c.kind) ? "_start" : "");
 }
 
 std::string component_names::choices(std::initializer_list<component_kind> kinds) const {

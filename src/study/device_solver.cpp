@@ -274,7 +274,7 @@ cuda::device_values device_solver<R>::values_of(const quantity& what) const {
         case origin::sample_time:
             at(arrays.sample.time);
             break;
-        case origin::samples_stored:
+        case origin::stored_samples:
             at(arrays.sample.stored);
             break;
         case origin::end:

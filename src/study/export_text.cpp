@@ -4,10 +4,14 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <map>
+#include <sstream>
+#include <variant>
 
 #include <unistd.h>
 
 #include "myriad/host/core/error.hpp"
+#include "myriad/host/report/status_names.hpp"
 #include "myriad/study/export.hpp"
 #include "myriad/study/file_system.hpp"
 #include "myriad/study/metadata.hpp"
@@ -95,6 +99,53 @@ void append_names(std::string& text, const std::string& name, const std::vector<
         append_names(text, message(name, '[', i, ']'), inner, level + 1);
 }
 
+/// The words that the numbers of a variable stand for, by CF's flags: those of statuses.
+std::map<std::int64_t, std::string> words_of(const variable& v) {
+    const std::vector<std::int64_t>* values = nullptr;
+    const std::string* words = nullptr;
+    for (const attribute& a : v.attributes) {
+        if (a.name == "flag_values") values = std::get_if<std::vector<std::int64_t>>(&a.value);
+        if (a.name == "flag_meanings") words = std::get_if<std::string>(&a.value);
+    }
+    std::map<std::int64_t, std::string> made;
+    if (values == nullptr || words == nullptr) return made;
+    std::istringstream text(*words);
+    std::string word;
+    for (const std::int64_t value : *values)
+        if (text >> word) made[value] = word;
+    return made;
+}
+
+/// One variable in the text: its bytes of the chunk, and what its numbers are called.
+struct text_column {
+    explicit text_column(const variable& of) : what(&of), words(words_of(of)) {
+        // What has no status yet has not been started.
+        const char* const not_started = name_of(status::not_started);
+        for (const auto& [value, word] : words)
+            if (word == not_started) missing = word;
+    }
+
+    void append(std::string& text, std::size_t place) const {
+        if (!words.empty()) {
+            std::int64_t value = 0;
+            with_type(what->type, [&]<class T>(T number) {
+                std::memcpy(&number, values.data() + place * sizeof(T), sizeof(T));
+                value = static_cast<std::int64_t>(number);
+            });
+            if (const auto found = words.find(value); found != words.end()) {
+                text += found->second;
+                return;
+            }
+        }
+        append_value(text, what->type, values.data(), place);
+    }
+
+    const variable* what;
+    std::map<std::int64_t, std::string> words;
+    std::string missing = "nan";
+    std::vector<std::byte> values = {};
+};
+
 void write_csv(const results& from, new_file& file) {
     const layout& content = from.content();
     std::string text;
@@ -113,22 +164,22 @@ void write_csv(const results& from, new_file& file) {
         append_names(text, axis.name, {});
         axes.emplace_back(axis, nullptr, stride);
     }
-    std::vector<const variable*> variables;
+    std::vector<text_column> columns;
     for (const variable& v : content.variables)
-        if (v.extent == along::instances) variables.push_back(&v);
+        if (v.extent == along::instances) columns.emplace_back(v);
     // What was drawn at random beside the axes.
-    std::stable_partition(variables.begin(), variables.end(),
-                          [](const variable* v) { return v->role == role::coordinate; });
-    for (const variable* v : variables) append_names(text, v->name, v->inner);
+    std::stable_partition(columns.begin(), columns.end(),
+                          [](const text_column& c) { return c.what->role == role::coordinate; });
+    for (const text_column& c : columns) append_names(text, c.what->name, c.what->inner);
     text += '\n';
 
-    std::vector<std::vector<std::byte>> values(variables.size());
     for (std::int64_t chunk = 0; chunk < content.chunks(); ++chunk) {
         const chunk_range range = range_of(content, chunk);
         const bool done = from.done(chunk);
-        for (std::size_t v = 0; v < variables.size() && done; ++v) {
-            values[v].resize(static_cast<std::size_t>(range.count * variables[v]->item_bytes()));
-            from.read(variables[v]->name, range.first, range.count, values[v].data());
+        for (text_column& c : columns) {
+            if (!done) break;
+            c.values.resize(static_cast<std::size_t>(range.count * c.what->item_bytes()));
+            from.read(c.what->name, range.first, range.count, c.values.data());
         }
         for (std::int64_t i = 0; i < range.count; ++i) {
             bool is_first = true;
@@ -140,15 +191,14 @@ void write_csv(const results& from, new_file& file) {
                 separate();
                 append(text, axis.value(range.first + i));
             }
-            for (std::size_t v = 0; v < variables.size(); ++v) {
-                const auto per_item = static_cast<std::size_t>(variables[v]->values_per_item());
+            for (const text_column& c : columns) {
+                const auto per_item = static_cast<std::size_t>(c.what->values_per_item());
                 for (std::size_t j = 0; j < per_item; ++j) {
                     separate();
                     if (done)
-                        append_value(text, variables[v]->type, values[v].data(),
-                                     static_cast<std::size_t>(i) * per_item + j);
+                        c.append(text, static_cast<std::size_t>(i) * per_item + j);
                     else
-                        text += "nan";
+                        text += c.missing;
                 }
             }
             text += '\n';

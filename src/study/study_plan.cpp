@@ -214,7 +214,7 @@ std::string long_name(origin from, const component& what) {
             return text_of(what) + " at each sample";
         case origin::sample_time:
             return "time of each sample";
-        case origin::samples_stored:
+        case origin::stored_samples:
             return "number of samples";
         case origin::end:
             return "last value of " + text_of(what);
@@ -367,7 +367,7 @@ private:
             add(origin::sample, names_.variable(c) + "_sample", asked_.real, stored, {sample}, unit_of(c), c);
         }
         add(origin::sample_time, "t_sample", asked_.real, stored, {sample}, unit_of("t"));
-        add(origin::samples_stored, "samples_stored", element::i32, stored);
+        add(origin::stored_samples, "stored_samples", element::i32, stored);
     }
     void add_end(const std::string& name, bool stored) {
         if (name == "t") {

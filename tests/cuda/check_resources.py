@@ -4,12 +4,14 @@
 
 A limit is a comment line
 
-    // limit: <kernel> [stack BYTES] [spill BYTES] [registers COUNT] [registers_within FACTOR of <other kernel>]
+    // limit: <kernel> [stack BYTES] [spill BYTES] [code BYTES] [registers COUNT]
+    // limit: <kernel> [registers_within FACTOR of <other kernel>]
 
-and every kernel named must be within it: stack frame, spill stores plus spill loads, registers, registers compared
-with another kernel of the same file (a hand-written one). <kernel> is the function's name without namespace, template
-arguments and parameters; with the template arguments, it means that instance only (as in `run<lorenz, rk4>`, their
-namespaces and last ones left out or not). Kernels without a limit are listed and pass. A line
+and every kernel named must be within it: stack frame, spill stores plus spill loads, instructions of the kernel and of
+the functions that it calls, registers, registers compared with another kernel of the same file (a hand-written one).
+<kernel> is the function's name without namespace, template arguments and parameters; with the template arguments, it
+means that instance only (as in `run<lorenz, rk4>`, their namespaces and last ones left out or not). Kernels without a
+limit are listed and pass. A line
 
     // forbid: <type> in <kernel>
 
@@ -19,6 +21,7 @@ the compiler failed, 2 a wrong limit line or option.
 import argparse
 import re
 import shutil
+import struct
 import subprocess
 import sys
 import tempfile
@@ -33,6 +36,7 @@ class Resources:
     stack: int = 0
     spill: int = 0
     registers: int = 0
+    code: int = 0
 
 
 @dataclass
@@ -62,15 +66,15 @@ def read_limits(source):
         limit = Limit(split.group("kernel"))
         rest = split.group("rest")
         while rest:
-            bound = re.match(r"(stack|spill|registers)\s+(\d+)\s*", rest)
+            bound = re.match(r"(stack|spill|code|registers)\s+(\d+)\s*", rest)
             within = re.match(r"registers_within\s+(\d+(?:\.\d+)?)\s+of\s+(\w+(?:<.*?>(?=\s|$))?)\s*", rest)
             if bound:
                 limit.bounds[bound.group(1)] = int(bound.group(2))
             elif within:
                 limit.within = (float(within.group(1)), within.group(2))
             else:
-                raise WrongLimit(f"line {number}: '{rest}' is no limit: give stack, spill or registers and a number, "
-                                 "or registers_within FACTOR of KERNEL")
+                raise WrongLimit(f"line {number}: '{rest}' is no limit: give stack, spill, code or registers and a "
+                                 "number, or registers_within FACTOR of KERNEL")
             rest = rest[(bound or within).end():]
         limits.append(limit)
     return limits
@@ -170,6 +174,20 @@ def read_report(report, names=None):
     return {short_name(names[mangled]): resources for mangled, resources in found.items()}
 
 
+def read_code(cubin, names=None):
+    """Bytes of instructions by short name, from a cubin: an ELF file with a section `.text.<mangled>` per kernel."""
+    table, = struct.unpack_from("<Q", cubin, 0x28)
+    size, count, of_names = struct.unpack_from("<3H", cubin, 0x3a)
+    headers = [struct.unpack_from("<IIQQQQ", cubin, table + i * size) for i in range(count)]
+    sections = {}
+    for header in headers:
+        begin = headers[of_names][4] + header[0]
+        sections[cubin[begin:cubin.index(b"\0", begin)].decode()] = header[5]
+    found = {name.removeprefix(".text."): bytes for name, bytes in sections.items() if name.startswith(".text.")}
+    names = names or demangle(found)
+    return {short_name(names[mangled]): bytes for mangled, bytes in found.items()}
+
+
 def plain(name):
     """A name without spaces and namespaces, as limits may be written."""
     return re.sub(r"\w+::", "", name.replace(" ", ""))
@@ -240,6 +258,7 @@ def main():
         return 2
     with tempfile.TemporaryDirectory() as folder:
         command = compile_command(arguments, arguments.source, str(Path(folder) / "kernel.o"))
+        command += ["--keep", "--keep-dir", folder]
         print(" ".join(command))
         try:
             result = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -252,16 +271,20 @@ def main():
             made = subprocess.run(compile_command(arguments, arguments.source, output, to_ptx=True),
                                   capture_output=True, text=True, check=False)
             ptx = Path(output).read_text(encoding="utf-8") if made.returncode == 0 else ""
+        code = {name: bytes for cubin in Path(folder).glob("*.cubin") for name, bytes in
+                read_code(cubin.read_bytes()).items()}
     report = result.stdout + result.stderr
     if result.returncode != 0:
         print(report)
         print(f"{arguments.source} does not compile")
         return 1
     kernels = read_report(report)
+    for name, used in kernels.items():
+        used.code = code[name]
     limited = {name for limit in limits for name in matching(kernels, limit.kernel)}
     for name, used in kernels.items():
         note = "" if name in limited else "  (no limit)"
-        print(f"{name}: {used.registers} registers, stack {used.stack}, spill {used.spill}{note}")
+        print(f"{name}: {used.registers} registers, stack {used.stack}, spill {used.spill}, code {used.code}{note}")
     complaints = check(kernels, limits) + check_ptx(ptx, forbidden)
     for complaint in complaints:
         print(f"too much: {complaint}")

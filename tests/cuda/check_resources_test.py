@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Tests of check_resources.py on a recorded ptxas report, so that they need no nvcc."""
+import struct
 import unittest
 
 import check_resources as checker
@@ -55,6 +56,17 @@ class CheckResources(unittest.TestCase):
         (complaint,) = complaints("// limit: lorenz registers_within 1.05 of lorenz_by_hand")
         self.assertIn("44", complaint)
         self.assertIn("40", complaint)
+
+    def test_instructions_are_those_of_the_section_of_the_kernel(self):
+        names = b"\0.text._Z6lorenzPd\0.shstrtab\0"
+        header = b"\0" * 0x28 + struct.pack("<Q", 64) + b"\0" * 10 + struct.pack("<3H", 64, 3, 2)
+        sections = b"".join(struct.pack("<IIQQQQ", *one).ljust(64, b"\0") for one in (
+            (0, 0, 0, 0, 0, 0), (1, 1, 0, 0, 0, 4096), (names.index(b".shstrtab"), 3, 0, 0, 256, len(names))))
+        code = checker.read_code(header + sections + names, NAMES)
+        self.assertEqual(code, {"lorenz": 4096})
+        kernels = {"lorenz": checker.Resources(code=4096)}
+        self.assertEqual(checker.check(kernels, checker.read_limits("// limit: lorenz code 4096")), [])
+        self.assertEqual(len(checker.check(kernels, checker.read_limits("// limit: lorenz code 4095"))), 1)
 
     def test_limit_for_a_kernel_that_is_not_there_is_reported(self):
         self.assertIn("no such kernel", complaints("// limit: lorentz stack 0")[0])

@@ -24,6 +24,7 @@ GPU_CODE = {
     "myriad/kernel/core/macros.hpp",            # execution spaces, unrolling, barriers
     "myriad/kernel/core/team.hpp",              # what the threads of a team do together
     "myriad/kernel/core/vec.hpp",               # indices out of range, which the host's compiler refuses
+    "myriad/kernel/model/rhs_weight.hpp",       # from which weight on a right-hand side is called
     "myriad/kernel/model/unit_views.hpp",       # numbers of units, likewise
     "myriad/kernel/scalar/math.hpp",            # functions of one number
     "myriad/kernel/scalar/trigonometry.hpp",

@@ -77,7 +77,7 @@ TEST_CASE("The last axis of a grid varies fastest", "[axes]") {
     CHECK(column(a, {state, 0}) == std::vector<double>(6, 5));
     REQUIRE(a.dimensions().size() == 2);
     CHECK(a.dimensions()[0].name == "k");
-    CHECK(a.dimensions()[1].name == "v_begin");  // a call changes v
+    CHECK(a.dimensions()[1].name == "v_start");  // a call changes v
 }
 TEST_CASE("Paired axes are one dimension", "[axes]") {
     axes a(names());
@@ -86,7 +86,7 @@ TEST_CASE("Paired axes are one dimension", "[axes]") {
     REQUIRE(a.size() == 6);
     CHECK(column(a, {parameter, 0}) == std::vector<double>{1, 1, 2, 2, 3, 3});
     CHECK(column(a, {state, 0}) == std::vector<double>{4, 4, 5, 5, 6, 6});
-    CHECK(a.dimensions()[0].name == "k_state_x_begin");
+    CHECK(a.dimensions()[0].name == "k_state_x_start");
     CHECK(a.dimensions()[1].name == "draw");
 }
 TEST_CASE("Any part of the instances has the values that they have as a whole", "[axes]") {

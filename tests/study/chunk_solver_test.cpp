@@ -81,7 +81,7 @@ TEST_CASE("Axes of every kind give the same instances and results on the device 
         s.keep.end = {"x", "v", "k", "my_number", "highest", "phases", "t"};
         s.keep.work = true;
         for (const char* name :
-             {"x", "phases", "v_sample", "t_last", "x_begin", "v_begin", "status", "rhs_evaluations"})
+             {"x", "phases", "v_sample", "t_last", "x_start", "v_start", "status", "rhs_evaluations"})
             reduce_all(s, name, linspace(-1, 2, 20));
     });
 }

@@ -241,8 +241,24 @@ TEST_CASE("text has a line for each instance, with numbers that read back as the
         CHECK(std::stof(cells[6]) == static_cast<float>(tests::synthetic(i, 4)));
         CHECK(cells[7] == std::to_string(i * i));
         CHECK(cells[13] == std::to_string(10 * i + 5));
-        CHECK(cells[14] == (i % 3 == 0 ? "1" : "0"));
+        CHECK(cells[14] == (i % 3 == 0 ? "failed" : "ok"));
     }
+}
+
+TEST_CASE("text says in words how instances ended") {
+    tests::temporary_folder folder;
+    layout content = tests::synthetic_layout();
+    const std::string words = "not_started success";
+    for (variable& v : content.variables)
+        for (attribute& a : v.attributes)
+            if (a.name == "flag_meanings") a.value = words;
+    store results = store::create_or_resume(folder / "run", content);
+    for (int i = 1; i < 9; ++i) tests::commit_synthetic(results, i);
+    myriad::export_csv(results, folder / "run.csv");
+    const std::string text = tests::text_of(folder / "run.csv");
+    CHECK_THAT(text, Contains("nan,not_started\n"));  // of chunk 0, which is not done
+    CHECK_THAT(text, Contains(",success\n"));
+    CHECK_THAT(text, !Contains(",1\n") && !Contains(",255\n"));
 }
 
 TEST_CASE("an array for NumPy has its header and its values") {

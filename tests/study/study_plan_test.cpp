@@ -47,7 +47,7 @@ TEST_CASE("A study keeps records, last values and statuses along its axes", "[st
     layout content = plan_study(asked).content;
     content.chunk = 2;
     content.check();
-    CHECK(names_of(content) == std::vector<std::string>{"a_begin", "x", "t", "x_end", "t_last", "status"});
+    CHECK(names_of(content) == std::vector<std::string>{"a_start", "x", "t", "x_end", "t_last", "status"});
     CHECK(content.instances() == 5);
     CHECK(content.variables[0].role == role::coordinate);
     const variable& x = content.variables[content.find("x")];
@@ -59,7 +59,7 @@ TEST_CASE("A study keeps records, last values and statuses along its axes", "[st
 
     std::vector<std::string> coordinates;
     for (const coordinate& c : content.coordinates) coordinates.push_back(c.name + '(' + c.dimension + ')');
-    CHECK(coordinates == std::vector<std::string>{"k(k)", "x_begin()", "B()", "t_begin()", "t_end()", "phase(phase)"});
+    CHECK(coordinates == std::vector<std::string>{"k(k)", "x_start()", "B()", "t_begin()", "t_end()", "phase(phase)"});
     std::vector<double> phase(2);
     content.coordinates.back().values(1, phase);
     CHECK(phase == std::vector<double>{7, 8});
@@ -68,9 +68,9 @@ TEST_CASE("Random values are not kept if that is not wanted, and can be reduced"
     study_request asked = request();
     asked.axes.add("a", normal(0, 1));
     asked.keep.random = false;
-    asked.reductions = {mean_of("a_begin")};
+    asked.reductions = {mean_of("a_start")};
     CHECK(names_of(plan_study(asked).content) ==
-          std::vector<std::string>{"a_begin_mean_partial", "a_begin_mean", "x", "t", "status"});
+          std::vector<std::string>{"a_start_mean_partial", "a_start_mean", "x", "t", "status"});
 }
 TEST_CASE("What only a reduction needs is computed, and not kept", "[study_plan]") {
     study_request asked = request();

@@ -97,7 +97,7 @@ TEST_CASE("A study has the bits of an ensemble that was laid out and solved by h
 
     ensemble<duffing> e(ks * omegas);
     const double omega[] = {1, 1.1, 1.3, 0.7};
-    const auto v = r.values("v_begin");
+    const auto v = r.values("v_start");
     for (std::int64_t i = 0; i < e.size(); ++i) {
         e.parameter(duffing::k)[i] = Eigen::ArrayXd::LinSpaced(ks, 0.2, 0.3)[i / omegas];
         e.parameter(duffing::omega)[i] = omega[i % omegas];
@@ -124,7 +124,7 @@ TEST_CASE("A study has the bits of an ensemble that was laid out and solved by h
     check("t", report.records.time());
     check("v_sample", e.samples().state(duffing::v));
     check("t_sample", e.samples().time());
-    check("samples_stored", e.samples().stored());
+    check("stored_samples", e.samples().stored());
     check("x_end", e.state(duffing::x));
     check("my_number_end", e.accessory(duffing::my_number));
     check("phases_end", e.integer_accessory(duffing::phases));

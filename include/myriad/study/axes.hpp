@@ -89,7 +89,7 @@ public:
     };
     /// A dimension of the grid of instances.
     struct dimension {
-        std::string name;         ///< as results call it: "k", "x_begin", or for paired ones "x_begin_v_begin"
+        std::string name;         ///< as results call it: "k", "x_start", or for paired ones "x_start_v_start"
         std::int64_t length;      ///< the number of its values
         std::int64_t stride = 1;  ///< instances from one value to the next
     };

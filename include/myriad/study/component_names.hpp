@@ -3,7 +3,9 @@
 // that all of a study but one adapter is compiled once. Host code only.
 #pragma once
 
+#include <functional>
 #include <initializer_list>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -61,10 +63,12 @@ public:
     /// The component called "k", "parameter.k" or "parameter.3", if it is of one of the given kinds. Throws `error`,
     /// which lists the names there are, for any other name, and for one that several components have.
     const component& find(std::string_view name, std::initializer_list<component_kind> kinds) const;
-    /// The name of a variable or an axis of results for this component: its own name if no other has it, otherwise with
-    /// the kind, "state_x".
+    /// Whether results call something by this name that is no component's own value, as "t", "status" or "x_end".
+    bool is_taken(std::string_view name) const;
+    /// The name of a variable or an axis of results for this component: its own name if nothing else has it, otherwise
+    /// with the kind, "state_x".
     std::string variable(const component& c) const;
-    /// The name of its initial value, "x_begin", if a call changes it; otherwise the same.
+    /// The name of its initial value, "x_start", if a call changes it; otherwise the same.
     std::string initial_variable(const component& c) const;
 
 private:
@@ -72,6 +76,7 @@ private:
 
     std::string model_;
     std::vector<component> all_;
+    std::map<std::string, int, std::less<>> uses_;  // how many have a name
 };
 
 }  // namespace myriad::studies::inline MYRIAD_ABI

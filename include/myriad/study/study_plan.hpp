@@ -19,13 +19,13 @@ namespace myriad {
 
 /// What is kept of every instance. What `options::record` and `options::samples` choose is kept too: a recorded state x
 /// as variable "x" with dimension "phase", the time of the records as "t"; samples as "x_sample" and "t_sample" with
-/// dimension "sample", their number as "samples_stored".
+/// dimension "sample", their number as "stored_samples".
 struct kept_values {
     /// Components whose last values are kept, as "x_end"; "t" for the time at which the last phase ended, "t_last".
     std::vector<std::string> end = {};
     bool records = true;  ///< whether records are kept; otherwise they are for reductions alone
     bool samples = true;  ///< the same for samples
-    bool random = true;   ///< whether random values are kept, as "k" or "v_begin"; otherwise only reductions see them
+    bool random = true;   ///< whether random values are kept, as "k" or "v_start"; otherwise only reductions see them
     bool status = true;   ///< how each instance ended, as "status" with CF's flags
     bool work = false;    ///< "phases_done", and if counted steps and evaluations: "accepted_steps", "rejected_steps",
                           ///< "located_steps", "rhs_evaluations"
@@ -40,7 +40,7 @@ enum class origin {
     record_time,
     sample,
     sample_time,
-    samples_stored,
+    stored_samples,
     end,
     end_time,
     status,

@@ -8,7 +8,7 @@ import os
 import sys
 import threading
 import types
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Mapping
 
 import numpy as np
 
@@ -50,6 +50,7 @@ _elsewhere = {
     "first_step": "step=", "h0": "step=", "dt": "step=", "max_step": "maximum_step=", "hmax": "maximum_step=",
     "dtmax": "maximum_step=", "min_step": "minimum_step=", "hmin": "minimum_step=", "dtmin": "minimum_step=",
     "mxstep": "max_steps=", "nsteps": "max_steps=", "maxiters": "max_steps=", "reltol": "rtol=", "abstol": "atol=",
+    "sensitivities": "free=", "by": "free=",
     "fun": "a model, the first argument", "f": "a model, the first argument", "alg": "method=", "callback": "events=",
     "threads": "device=\"cpu:4\"", "n_jobs": "device=\"cpu:4\""}
 _needless = ("jac", "jac_sparsity", "lband", "uband", "vectorized", "Dfun", "tfirst")
@@ -64,8 +65,15 @@ def refuse_options(given: Iterable[str], known: Collection[str], call: str) -> N
             hint = f"give {_elsewhere[name]}"
         else:
             near = difflib.get_close_matches(name, known, 1)
-            hint = f"did you mean '{near[0]}'?" if near else f"help(myriad.{call}) lists what there is"
+            hint = f"did you mean '{near[0]}'?" if near else f"help(my.{call}) lists what there is"
         raise UnknownOption(f"{call} has no option '{name}'{at(users_line())}: {hint}")
+
+
+def renamed(what: str, name: str, names: Mapping[str, str]) -> str:
+    """What a member is called now that has another name, or that there is none of this name."""
+    if name in names:
+        return f"{what}.{name} has another name: use {what}.{names[name]}"
+    return f"there is no {what}.{name}"
 
 
 def refuse_masked(values: object, what: str) -> None:

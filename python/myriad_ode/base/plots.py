@@ -114,12 +114,16 @@ def parameter_map(x: Any, y: Any, z: Any, *, xlabel: str | None = None, ylabel: 
                   zlabel: str | None = None, names: Sequence[str] | None = None, axes: Axes | None = None,
                   **style: Any) -> Any:
     """A quantity z over two parameters in colour: z has shape (len(x), len(y)). NaN is left grey. With `names`, z has
-    whole numbers that stand for these names. Further arguments go to matplotlib's `pcolormesh`."""
+    whole numbers that stand for these names; z may also be words, as statuses. Further arguments go to matplotlib's
+    `pcolormesh`."""
     xlabel, ylabel, zlabel = _label(x, xlabel), _label(y, ylabel), _label(z, zlabel)
     x, y, z = _numbers(x, "x", (1,)), _numbers(y, "y", (1,)), _numbers(z, "z", (2,))
     if z.shape != (len(x), len(y)):
         raise Error(f"z has shape {z.shape} for {len(x)} values of x and {len(y)} of y: give it the shape "
                     f"({len(x)}, {len(y)})")
+    if z.dtype.kind == "U":
+        words, places = np.unique(z, return_inverse=True)
+        names, z = words.tolist(), places.reshape(z.shape)
     axes = _axes_of(axes, figsize=(6.4, 4.8))
     axes.set_facecolor("0.85")
     if names is None:
@@ -189,9 +193,13 @@ def phase_portrait(x: Any, y: Any, *, labels: Sequence[str] | None = None, xlabe
     return axes
 
 
-def statuses(status: Any, names: Sequence[str], *, axes: Axes | None = None) -> Any:
-    """How many instances ended in which way: `status` has numbers into `names`."""
-    counts = np.bincount(_numbers(status, "status", (1,)), minlength=len(names))
+def statuses(status: Any, names: Sequence[str] = (), *, axes: Axes | None = None) -> Any:
+    """How many instances ended in which way: `status` has words, or numbers into `names`."""
+    status = _numbers(status, "status", (1,))
+    if not names:
+        words, status = np.unique(status, return_inverse=True)
+        names = words.tolist()
+    counts = np.bincount(status, minlength=len(names))
     present = np.flatnonzero(counts)[::-1]
     axes = _axes_of(axes, figsize=(6, 0.9 + 0.35 * len(present)))
     labels = [str(names[i]).replace("_", " ") for i in present]

@@ -29,10 +29,6 @@ if TYPE_CHECKING:
 _columns = 116  # inside the struct
 _deepest = 50  # operations within each other in one statement: compilers limit the depth of parentheses
 _largest_literal = 1 << 24  # exact in single precision
-# About as many instructions cost the same in every stage and in one function that the stages call. Networks of sines
-# and cosines, g++ 12, AVX-512, ns per evaluation: inlined 3.6, called 5.9 (two oscillators); 11.0 and 10.9 (four,
-# 192 instructions); 18.2 and 14.1 (six); 65 and 37 (twelve, which then compile in 7 s instead of 66).
-_largest_inlined = 150
 # Stiff methods keep dense factors of fewer states in registers, and have no other ones for more states.
 _sparse_states = range(7, 129)
 # Beyond, the pattern alone is written, and the derivatives come from dual numbers. A network of 75 species with 1542
@@ -355,9 +351,9 @@ class Writer:
         model = self.model
         declared = [name for name in ("accessories_are_outputs", "writes_parameters", "writes_time_domain")
                     if getattr(model, name)]
-        if cost(model.rhs) > _largest_inlined:
-            declared.append("large_rhs")
-        return [f"static constexpr bool {name} = true;" for name in declared]
+        # From which the library sees whether a kernel is to have one copy of rhs; in C++ it has to count.
+        weight = [f"static constexpr int rhs_weight = {cost(model.rhs)};"]
+        return [f"static constexpr bool {name} = true;" for name in declared] + weight
 
     def jacobian(self) -> tuple[list[str], list[list[str]]]:
         """What stiff methods need of a large model: the pattern of its Jacobian, whether it depends on time, as lines,

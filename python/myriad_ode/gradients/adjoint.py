@@ -44,33 +44,33 @@ _most_bytes, _most_bytes_on_gpu = 1 << 23, 1 << 30
 
 
 class Adjoint:
-    """The quantities `of` as a function of the components `by`, and derivatives of losses that depend on them. Values
-    of `by` are in rows, one for each instance; `samples` are a number of times or times, without which the quantities
+    """The quantities `of` as a function of the components `free`, and derivatives of losses that depend on them. Values
+    of `free` are in rows, one for each instance; `samples` are a number of times or times, without which the quantities
     are those at the end; `options` are those of `solve`."""
 
-    def __init__(self, model: AnyModel, by: Sequence[str], of: Sequence[Any], sweep: Mapping[str, Any],
+    def __init__(self, model: AnyModel, free: Sequence[str], of: Sequence[Any], sweep: Mapping[str, Any],
                  start: Mapping[str, Any], options: Mapping[str, Any], samples: Any = None) -> None:
-        self.model = _checked(model, by)
+        self.model = _checked(model, free)
         self._actions = _actions(self.model)
         recorded, self._counters = _counting(self.model, self._actions)
         self._components = components = Components(model)
-        self.by, self.of = list(by), list(of)
+        self.free, self.of = list(free), list(of)
         options = _checked_options(options)
         for name in components.of(("state", "accessory")):
-            if name not in self.by and components.follows(name, self.by, {*sweep, *start, *self.by}):
+            if name not in self.free and components.follows(name, self.free, {*sweep, *start, *self.free}):
                 raise no_adjoint(f"the initial value of '{name}' follows from components that derivatives are by")
         self.method = options.get("method") or default
         self._states = [sym.symbol("state", name) for name in components.states]
-        self._wrt = [name for name in self.by if name not in components.states]  # chosen parameters
+        self._wrt = [name for name in self.free if name not in components.states]  # chosen parameters
         self._times = _times(samples, options["time"])
         self._capacity, self._threads = 256, 1  # records of an instance, and threads, at first
         device = options["device"]
         self._gpu = int(device.partition(":")[2]) if device.startswith("cuda") else None
         self._most_on_gpu = _most_bytes_on_gpu
         self._place = [components.states.index(name) if name in components.states else
-                       len(components.states) + self._wrt.index(name) for name in self.by]
+                       len(components.states) + self._wrt.index(name) for name in self.free]
         self._quantities = [self._quantity(one) for one in self.of]
-        self._forward = Forward(recorded, self.by, sweep, {**start, **dict.fromkeys(self._counters, 0.0)}, {
+        self._forward = Forward(recorded, self.free, sweep, {**start, **dict.fromkeys(self._counters, 0.0)}, {
             key: self._with_counters(value) if key in ("rtol", "atol") else value for key, value in options.items()})
 
     def _quantity(self, name: Any) -> Node:
@@ -109,7 +109,7 @@ class Adjoint:
         into 8 MiB for each thread, or 1 GiB of a GPU."""
         count, at = len(rows), self._times
         values = np.full((count, 1 if at is None else len(at), len(self.of)), np.nan)
-        gradient = np.full((count, len(self.by)), np.nan)
+        gradient = np.full((count, len(self.free)), np.nan)
         status = np.zeros(count, np.int32)
         first = 0
         while first < count:
@@ -122,11 +122,11 @@ class Adjoint:
                 del run  # and with it its memory, before the next one
                 continue
             stored, kept = run.stored_samples, self._capacity
-            longest = max(int(stored.max()), int(run.steps("accepted").max())) + 1
+            longest = max(int(stored.max()), int(run.accepted_steps.max())) + 1
             self._capacity, self._threads = longest + longest // 8, run.report.threads  # for what follows
             if (stored >= kept).any():  # maybe not all steps were kept
                 continue
-            done = run.status == status_names.index("success")
+            done = run.status_codes == status_names.index("success")
             self._check_actions(run, done)
             call = (_Call(run, at, self._components, self._counters) if self._gpu is None else
                     _CallOnGpu(run, at, self._components, self._counters, self._gpu))
@@ -136,7 +136,7 @@ class Adjoint:
             found = call.gradient(self._kernel, np.where(done[:, None, None], weights, 0.0),
                                   len(self._states) + len(self._wrt))
             found[~(np.isfinite(found).all(axis=1) & done)] = np.nan
-            gradient[part], status[part] = found[:, self._place], run.status
+            gradient[part], status[part] = found[:, self._place], run.status_codes
             first = part.stop
             del run, call
         return values, gradient, status

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..base.errors import Error
-from ..base.statuses import first_failure
 from ..kernels.devices import device_names
 from ..models import state_jumps
 from ..models.components import Components, listed, unknown
@@ -30,32 +29,32 @@ __all__ = ["Batched", "batched"]
 
 
 class Batched:
-    """A function of values of the components `by`, in the last axis of its argument, whose other axes are those of a
+    """A function of values of the components `free`, in the last axis of its argument, whose other axes are those of a
     batch: all of it is integrated by one call of `solve`. The result has the axes of the batch, one of the samples, if
     any were asked for, and one of the quantities `of`. It is NaN for instances that have failed."""
 
-    def __init__(self, model: AnyModel, by: SomeComponents, of: SomeComponents, sweep: ByComponent | None,
+    def __init__(self, model: AnyModel, free: SomeComponents, of: SomeComponents, sweep: ByComponent | None,
                  start: ByComponent | None, options: Mapping[str, Any], adjoint: bool = False) -> None:
         components = Components(model)
         self.model = model
-        self.by = [components.component(one) for one in listed(by)]  #: names of the components that vary
+        self.free = [components.component(one) for one in listed(free)]  #: names of the components that vary
         self.of: list[Component] = [one if one is time_symbol else components.component(one) for one in listed(of)]
-        self._forward = forward_of(model, self.by, "by=", sweep, start, options)
-        if len(set(self.by)) < len(self.by) or not self.by or not self.of:
-            raise Error(f"by= names {self.by!r} and of= {self.of!r}: name at least one component each, none twice in "
-                        "by=")
+        self._forward = forward_of(model, self.free, sweep, start, options)
+        if len(set(self.free)) < len(self.free) or not self.free or not self.of:
+            raise Error(f"free= names {self.free!r} and of= {self.of!r}: name at least one component each, none twice "
+                        "in free=")
         results = [*components.states, *components.of(("accessory",)), *components.outputs]
         for one in self.of:
             if one is not time_symbol and one not in results:
                 raise unknown(str(one), results, "state, accessory or output that can be a result")
-        refuse_chosen(options, ("record", "sensitivities", "size"), "a batched function")
+        refuse_chosen(options, ("record", "size"), "a batched function")
         self._of_states = all(one is not time_symbol and one in components.states for one in self.of)
         samples = self._option("samples", None)
         self.n_samples = None if samples is None else self._count(samples)  #: None without samples
         if self.n_samples is not None and any(one is time_symbol for one in self.of):
             raise Error("of= has the time at which the last phase ended, which has no samples: leave out samples=")
         #: of `vjp`; None for forward sensitivities
-        self.adjoint = Adjoint(model, self.by, self.of, self._forward.sweep, self._forward.start,
+        self.adjoint = Adjoint(model, self.free, self.of, self._forward.sweep, self._forward.start,
                                self._forward.plain_options(), samples) if adjoint else None
 
     @staticmethod
@@ -94,8 +93,8 @@ class Batched:
         return self._forward.run(self._forward.of_rows(values), sensitivities)
 
     def run_columns(self, columns: Sequence[Any], sensitivities: bool = False) -> Run:
-        """The same of one array of values for each component of by=."""
-        return self._forward.run(dict(zip(self.by, columns)), sensitivities)
+        """The same of one array of values for each component of free=."""
+        return self._forward.run(dict(zip(self.free, columns)), sensitivities)
 
     def check_derivatives(self) -> None:
         """Refuses derivatives of a model that jumps where they leave that out."""
@@ -103,23 +102,23 @@ class Batched:
 
     def _rows(self, values: Values) -> tuple[Array, tuple[int, ...]]:
         array = np.asarray(values)
-        if array.ndim == 0 or array.shape[-1] != len(self.by):
+        if array.ndim == 0 or array.shape[-1] != len(self.free):
             raise Error(f"the argument has the shape {array.shape}: its last axis has the values of "
-                        f"{', '.join(self.by)}, {len(self.by)} in number")
+                        f"{', '.join(self.free)}, {len(self.free)} in number")
         if array.dtype.kind not in "fiu":
             raise Error(f"the argument has the type {array.dtype}: give real numbers")
-        return np.ascontiguousarray(array.reshape(-1, len(self.by)), dtype=float), array.shape[:-1]
+        return np.ascontiguousarray(array.reshape(-1, len(self.free)), dtype=float), array.shape[:-1]
 
     def _stacked(self, arrays: Iterable[Array], run: Run) -> Array:
         """Arrays [row, ...] as one [array, ..., row], as the run has them in memory; NaN where an instance has
         failed."""
         found = np.stack([array.T for array in arrays])
-        if (failed := run.status >= first_failure).any():
+        if (failed := run.failed).any():
             found[..., failed] = np.nan
         return found
 
     def _values(self, run: Run, batch: tuple[int, ...]) -> Array:
-        found = self._stacked((run.t if one is time_symbol else run[one] for one in self.of), run)
+        found = self._stacked((run.t_last if one is time_symbol else run._values_of(str(one)) for one in self.of), run)
         return found.T.reshape(*batch, *self.shape)
 
     def __call__(self, values: Values) -> Array:
@@ -133,9 +132,9 @@ class Batched:
         self.check_derivatives()
         rows, batch = self._rows(values)
         run = self.run(rows, sensitivities=True)
-        slopes = self._stacked((run.sensitivity[one, k] for k in self.by for one in self.of), run)
-        slopes = slopes.reshape(len(self.by), len(self.of), *slopes.shape[1:])
-        return self._values(run, batch), slopes.T.reshape(*batch, *self.shape, len(self.by))
+        slopes = self._stacked((run.sensitivity[one, k] for k in self.free for one in self.of), run)
+        slopes = slopes.reshape(len(self.free), len(self.of), *slopes.shape[1:])
+        return self._values(run, batch), slopes.T.reshape(*batch, *self.shape, len(self.free))
 
     def vjp(self, values: Values, weights: Values | Callable[[Array], Any]) -> tuple[Array, Array]:
         """The results, and the derivatives by the values of a loss that depends on the results: a product of a vector
@@ -150,7 +149,7 @@ class Batched:
             flat = np.broadcast_to(np.asarray(given, float), (*batch, *self.shape)).reshape(len(rows), -1)
             # a weight of zero counts nothing, though the derivative may not exist
             counts_not = (flat == 0) & np.isfinite(results.reshape(flat.shape))
-            known = np.where(counts_not[:, :, None], 0.0, jacobian.reshape(len(rows), -1, len(self.by)))
+            known = np.where(counts_not[:, :, None], 0.0, jacobian.reshape(len(rows), -1, len(self.free)))
             gradient = (flat[:, None, :] @ known)[:, 0]
         else:
             if not callable(weights):
@@ -161,7 +160,7 @@ class Batched:
                 return np.broadcast_to(np.asarray(given, float), (len(found), *self.shape)).reshape(found.shape)
 
             results, gradient, _ = self.adjoint.gradient(rows, of_part)
-        return results.reshape(*batch, *self.shape), gradient.reshape(*batch, len(self.by))
+        return results.reshape(*batch, *self.shape), gradient.reshape(*batch, len(self.free))
 
     def to_jax(self) -> Callable[[Any], Any]:
         """The function for JAX arrays, under `jit`, `vmap`, `grad`, `jvp` and `vjp`; a batch by `vmap` is one call of
@@ -182,14 +181,14 @@ class Batched:
         return torch_function(self)
 
     def __repr__(self) -> str:
-        return f"<myriad_ode.Batched of {self.model!r} by {', '.join(self.by)}>"
+        return f"<myriad_ode.Batched of {self.model!r} by {', '.join(self.free)}>"
 
 
-def batched(model: AnyModel, *, by: SomeComponents, of: SomeComponents, sweep: ByComponent | None = None,
+def batched(model: AnyModel, *, free: SomeComponents, of: SomeComponents, sweep: ByComponent | None = None,
             start: ByComponent | None = None, adjoint: bool = False, **options: Any) -> Batched:
     """The model as a function of values of some components, in arrays.
 
-    by        the components that vary, parameters and initial states: the last axis of the argument
+    free      the components that vary, parameters and initial states: the last axis of the argument
     of        states, accessories, outputs, or `my.time` for the time at which the last phase ended: the last axis
               of the result
     sweep     the other parameters and shared values, one number each
@@ -200,4 +199,4 @@ def batched(model: AnyModel, *, by: SomeComponents, of: SomeComponents, sweep: B
     options   of `solve`, as time=, samples=, method=, rtol=, device=, sensitivity_control=
 
     The argument has any number of axes before the last, all of which are integrated at once."""
-    return Batched(model, by, of, sweep, start, options, adjoint)
+    return Batched(model, free, of, sweep, start, options, adjoint)

@@ -26,28 +26,28 @@ if TYPE_CHECKING:
 
 class Forward:
     """A model of which each instance has values of its own of some components, those of others are in `sweep` and
-    `start`, and derivatives are by the components `by`. `options` are those of `solve`."""
+    `start`, and derivatives are by the components `free`. `options` are those of `solve`."""
 
-    def __init__(self, model: AnyModel, by: Sequence[str], sweep: Mapping[str, Any], start: Mapping[str, Any],
+    def __init__(self, model: AnyModel, free: Sequence[str], sweep: Mapping[str, Any], start: Mapping[str, Any],
                  options: Mapping[str, Any]) -> None:
-        self.model, self.by, self.states = model, list(by), Components(model).states
+        self.model, self.free, self.states = model, list(free), Components(model).states
         self.sweep, self.start, self.options = sweep, start, dict(options)
 
     def of_rows(self, rows: Any) -> dict[str, Any]:
-        """Values of the components `by`, from the rows of an array, of NumPy's or on a GPU."""
-        return {name: _contiguous(rows[:, i]) for i, name in enumerate(self.by)}
+        """Values of the components `free`, from the rows of an array, of NumPy's or on a GPU."""
+        return {name: _contiguous(rows[:, i]) for i, name in enumerate(self.free)}
 
     def run(self, values: Mapping[str, Any], sensitivities: bool = False, **more: Any) -> Run:
         """The run of values by name, one for each instance. `more` are options of this call."""
-        by = self.by if sensitivities else []
+        free = self.free if sensitivities else []
         sweep = {name: value for name, value in values.items() if name not in self.states}
         start = {name: value for name, value in values.items() if name in self.states}
-        return solve(self.model, {**self.sweep, **sweep}, start={**self.start, **start}, sensitivities=by or None,
-                     **(self.options if by else self.plain_options()), **more)
+        return solve(self.model, {**self.sweep, **sweep}, start={**self.start, **start}, free=free or None,
+                     **(self.options if free else self.plain_options()), **more)
 
     def plain_options(self) -> dict[str, Any]:
         """The options of a call without sensitivities."""
-        derived = {f"{c}_by_{k}" for c in self.states for k in self.by}
+        derived = {f"{c}_by_{k}" for c in self.states for k in self.free}
 
         def of_states(tolerance: Any) -> Any:
             if not hasattr(tolerance, "items"):
@@ -58,26 +58,26 @@ class Forward:
                 for key, value in self.options.items() if key != "sensitivity_control"}
 
 
-def forward_of(model: AnyModel, by: Sequence[str], argument: str, sweep: ByComponent | None, start: ByComponent | None,
+def forward_of(model: AnyModel, free: Sequence[str], sweep: ByComponent | None, start: ByComponent | None,
                options: Mapping[str, Any]) -> Forward:
-    """A model as a function of the components `by` that a call names in an argument, with one value of each other."""
+    """A model as a function of the components `free` that a call names, with one value of each other."""
     components = Components(model)
     possible = components.of(("state", "parameter"))
-    for name in by:
+    for name in free:
         if components.place.get(name, ("",))[0] in kinds.shared:
-            raise Error(f"'{name}' is shared by all instances, and each has its own value of what is in {argument}: "
+            raise Error(f"'{name}' is shared by all instances, and each has its own value of what is in free=: "
                         "make it a parameter of the model")
         if name not in possible:
-            raise unknown(name, possible, f"component that {argument} can name")
+            raise unknown(name, possible, "component that free= can name")
     given = {"sweep=": by_component(by_name(sweep, "sweep", "sweep={B: 0.3}"), "sweep="),
              "start=": by_component(by_name(start, "start", "start={x: 1}"), "start=")}
     for where, values in given.items():
         for name, value in values.items():
-            if components.component(name) in by:
-                raise Error(f"'{name}' is in {argument} and has a value in {where}: give it in {argument} alone")
+            if components.component(name) in free:
+                raise Error(f"'{name}' is in free= and has a value in {where}: give it in free= alone")
             if np.ndim(value) != 0:
-                raise Error(f"'{name}' has several values in {where}: what is not in {argument} has one value")
-    return Forward(model, by, given["sweep="], given["start="], options)
+                raise Error(f"'{name}' has several values in {where}: what is not in free= has one value")
+    return Forward(model, free, given["sweep="], given["start="], options)
 
 
 def refuse_chosen(options: Mapping[str, Any], names: Sequence[str], what: str) -> None:

@@ -79,7 +79,7 @@ def _solved(function: FunctionOfValues, platform: str, with_jacobian: bool) -> C
     import jax
     import jax.numpy as jnp
 
-    shapes = [function.shape, (*function.shape, len(function.by))][:1 + with_jacobian]
+    shapes = [function.shape, (*function.shape, len(function.free))][:1 + with_jacobian]
 
     def on_host(theta: Any) -> Any:
         def call(rows: Any) -> list[Any]:
@@ -92,7 +92,7 @@ def _solved(function: FunctionOfValues, platform: str, with_jacobian: bool) -> C
                                         for shape in shapes], theta)
 
     def on_gpu(theta: Any) -> Any:
-        *found, status = jax_gpu.call(function, with_jacobian, theta.reshape(-1, len(function.by)))
+        *found, status = jax_gpu.call(function, with_jacobian, theta.reshape(-1, len(function.free)))
         marked = [jnp.where(status >= first_failure, jnp.nan, array) for array in found]  # instances are last
         return [array.T.reshape(*theta.shape[:-1], *shape) for array, shape in zip(marked, shapes)]
 
@@ -116,7 +116,7 @@ def jax_function(function: FunctionOfValues, platform: str = "cuda") -> Callable
     except ImportError:
         raise Error("to_jax needs the package jax: `pip install jax`") from None
 
-    n_by = len(function.by)
+    n_by = len(function.free)
 
     values, values_and_jacobian = (_solved(function, platform, with_jacobian) for with_jacobian in (False, True))
 
@@ -148,7 +148,7 @@ def jax_function(function: FunctionOfValues, platform: str = "cuda") -> Callable
         theta = jnp.asarray(theta)
         if theta.ndim == 0 or theta.shape[-1] != n_by:
             raise Error(f"the argument has the shape {theta.shape}: its last axis has the values of "
-                        f"{', '.join(function.by)}, {n_by} in number")
+                        f"{', '.join(function.free)}, {n_by} in number")
         if not jnp.issubdtype(theta.dtype, jnp.floating):
             theta = theta.astype(jnp.result_type(float))
         return rule(theta)

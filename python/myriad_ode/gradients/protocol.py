@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 class FunctionOfValues(Protocol):
     """A `Batched`, by what it does."""
 
-    by: list[str]
+    free: list[str]
     of: list[Any]
     n_samples: int | None
     adjoint: Any

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..base.errors import Error
-from ..base.statuses import first_failure
 from ..sweeps.gpu_inputs import is_on_gpu
 
 if TYPE_CHECKING:
@@ -25,8 +24,8 @@ def _solver(torch: Any, function: FunctionOfValues) -> Callable[[Any, bool], tup
     """What gives values for a tensor, and derivatives if they are wanted."""
     def from_gpu(run: Any, names: list[Any]) -> Any:
         """Results where they are, [instance, sample, name] or [instance, name]; NaN where an instance has failed."""
-        found = torch.stack([torch.from_dlpack(run.device[name]) for name in names], dim=-1)
-        failed = torch.as_tensor(run.status >= first_failure, device=found.device)
+        found = torch.stack([torch.from_dlpack(run.device.of_component(name)) for name in names], dim=-1)
+        failed = torch.as_tensor(run.failed, device=found.device)
         return torch.where(failed.reshape(-1, *[1] * (found.ndim - 1)), torch.nan, found)
 
     def stays_on_gpu(theta: Any) -> bool:
@@ -34,13 +33,14 @@ def _solver(torch: Any, function: FunctionOfValues) -> Callable[[Any, bool], tup
         return is_on_gpu(theta) and theta.dtype == real and theta.device.index == function.gpu
 
     def solved(theta: Any, wanted: bool) -> tuple[Any, Any]:
-        batch, count = theta.shape[:-1], len(function.by)
+        batch, count = theta.shape[:-1], len(function.free)
         if stays_on_gpu(theta):
             run = function.run(theta.detach().reshape(-1, count), sensitivities=wanted)
             values = from_gpu(run, function.of).reshape(*batch, *function.shape)
             if not wanted:
                 return values, None
-            slopes = torch.stack([from_gpu(run, [f"{one}_by_{k}" for k in function.by]) for one in function.of], dim=-2)
+            slopes = torch.stack([from_gpu(run, [f"{one}_by_{k}" for k in function.free])
+                                  for one in function.of], dim=-2)
             return values, slopes.reshape(*batch, *function.shape, count)
         rows = theta.detach().cpu().numpy()
         if not wanted:
@@ -76,7 +76,7 @@ def _with_jacobian(torch: Any, function: FunctionOfValues, solved: Callable[[Any
             extra = jacobian.ndim - 1 - len(function.shape)
             flat = of_values.reshape(*of_values.shape[:extra], 1, -1)
             # a weight of zero counts nothing, though the derivative may not exist
-            known = jacobian.reshape(*jacobian.shape[:extra], -1, len(function.by)).masked_fill(flat.mT == 0, 0.0)
+            known = jacobian.reshape(*jacobian.shape[:extra], -1, len(function.free)).masked_fill(flat.mT == 0, 0.0)
             return (flat @ known).squeeze(-2)
 
         @staticmethod
@@ -172,9 +172,9 @@ def torch_function(function: FunctionOfValues) -> Callable[[Any], Any]:
     values_alone = _values_alone(torch, solved)
 
     def call(theta: Any) -> Any:
-        if theta.ndim == 0 or theta.shape[-1] != len(function.by):
+        if theta.ndim == 0 or theta.shape[-1] != len(function.free):
             raise Error(f"the argument has the shape {tuple(theta.shape)}: its last axis has the values of "
-                        f"{', '.join(function.by)}, {len(function.by)} in number")
+                        f"{', '.join(function.free)}, {len(function.free)} in number")
         moves = torch.autograd.forward_ad.unpack_dual(theta).tangent is not None if theta.is_floating_point() else False
         if moves or theta.requires_grad and torch.is_grad_enabled():
             function.check_derivatives()

@@ -97,28 +97,28 @@ class Solution:
         self._function = function
         of = [str(one) for one in function.of]
         #: what each result has, one array of the run after another
-        self.results = [of, *([[f"{one}_by_{k}" for k in function.by for one in of]] if with_jacobian else []),
-                        ["status"]]
+        self.results = [of, *([[f"{one}_by_{k}" for k in function.free for one in of]] if with_jacobian else []),
+                        ["status_codes"]]
         self._with_jacobian = with_jacobian
         self.number = next(_numbers)
         _functions[self.number] = self
 
     def __call__(self, rows: int, device: int, stream: int, argument: int, results: Any) -> None:
-        """Integrates for values at an address on the GPU, [component of by=, row], and copies the results."""
+        """Integrates for values at an address on the GPU, [component of free=, row], and copies the results."""
         function = self._function
         if device != function.gpu:
             raise Error(f"the argument is on the GPU with number {device}, and the function integrates on "
                         f"cuda:{function.gpu}: give device=\"cuda:{device}\" to my.batched")
         apart = rows * function.real.itemsize
         run = function.run_columns([_Column(argument + i * apart, rows, function.real)
-                                    for i in range(len(function.by))], self._with_jacobian)
+                                    for i in range(len(function.free))], self._with_jacobian)
         samples = () if function.n_samples is None else (function.n_samples,)
         copies: list[tuple[int, int, int]] = []
         for names, to in zip(self.results, results):
             for name in names:
-                array = run.device[name]
+                array = run.device[name] if name == "status_codes" else run.device.of_component(name)
                 size = array.dtype.itemsize * math.prod(array.shape)
-                expected = (rows,) if name == "status" else (rows, *samples)
+                expected = (rows,) if name == "status_codes" else (rows, *samples)
                 if array.shape != expected:
                     raise Error(f"'{name}' has the shape {array.shape} on the GPU, and {expected} is expected")
                 if copies and (copies[-1][0] + copies[-1][2], copies[-1][1] + copies[-1][2]) == (to, array.address):
@@ -163,11 +163,11 @@ def register(platform: str) -> None:
 
 def call(function: FunctionOfValues, with_jacobian: bool, rows: Any) -> Sequence[Any]:
     """The results for rows of values in a program of JAX: quantities [quantity, row] or [quantity, sample, row],
-    derivatives [component of by=, quantity, ...] if they are wanted, and the statuses of the rows."""
+    derivatives [component of free=, quantity, ...] if they are wanted, and the statuses of the rows."""
     import jax
 
     count = rows.shape[0]
     inner = (len(function.of), *(() if function.n_samples is None else (function.n_samples,)), count)
-    shapes = [jax.ShapeDtypeStruct(inner, rows.dtype), jax.ShapeDtypeStruct((len(function.by), *inner), rows.dtype)]
+    shapes = [jax.ShapeDtypeStruct(inner, rows.dtype), jax.ShapeDtypeStruct((len(function.free), *inner), rows.dtype)]
     return jax.ffi.ffi_call(_target, [*shapes[:1 + with_jacobian], jax.ShapeDtypeStruct((count,), np.uint8)])(
         rows.T, function=np.int64(solution(function, with_jacobian).number))

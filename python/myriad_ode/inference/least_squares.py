@@ -42,8 +42,8 @@ class LeastSquares(Objective):
             by_name(free, "free", "free={k: (0.1, 10, \"log\")}"), "free=").items()])
         if not self.free:
             raise Error("free= names no component: give those to fit with their bounds, as in free={k: (0.1, 10)}")
-        refuse_chosen(options, ("samples", "record", "phases", "sensitivities", "size"), "a fit")
-        self._forward = forward_of(model, self.names, "free=", sweep, start, {
+        refuse_chosen(options, ("samples", "record", "phases", "size"), "a fit")
+        self._forward = forward_of(model, self.names, sweep, start, {
             **options, "atol": tolerances(components, options, {f.name: f.size for f in self.free})})
         self._begin = real(begin, "begin")
         self._read(data, sigma)
@@ -146,8 +146,8 @@ class LeastSquares(Objective):
         """Of sets in rows the loss, residuals, [set, residual], and their derivatives by the free components, one more
         axis. NaN where the model has no solution up to a time of the data."""
         run = self.run(values)
-        ended = run.status > status_names.index("success")
-        residuals = np.concatenate([run[n][:, w] for n, w in self._where.items()], axis=1)
+        ended = run.status_codes > status_names.index("success")
+        residuals = np.concatenate([run._values_of(n)[:, w] for n, w in self._where.items()], axis=1)
         jacobian = np.concatenate([run.sensitivity[n][:, w] for n, w in self._where.items()], axis=1)
         residuals = (residuals - self._observed) / self._sigma
         jacobian /= self._sigma[:, None]

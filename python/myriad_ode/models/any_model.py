@@ -56,7 +56,7 @@ class AnyModel(ComponentNames):
     time_unit = ""
 
     # Of a model that is made of another
-    by: Sequence[str] = ()  # components that it has derivatives by
+    free: Sequence[str] = ()  # components that it has derivatives by
     not_interpreted = ""  # why it cannot be interpreted, whatever is in it
 
     @property

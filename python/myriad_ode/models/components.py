@@ -74,9 +74,10 @@ class Components:
         self.aliases, self.outputs, self.constants = model.aliases, model.outputs, model.constants
         self.units, self.time_unit = model.units, model.time_unit
         self.generated = list(model.generated)  # components that the model sets in a study
+        self.writes_parameters = model.writes_parameters
         self.hidden = model.hidden  # accessories that no user has named
         self.events = list(model.events)
-        self.derivatives_by = list(model.by)  # components that a model has derivatives by
+        self.derivatives_by = list(model.free)  # components that a model has derivatives by
         self.place = {name: (kind, number) for kind in kinds.valued for number, name in enumerate(self.names[kind])}
 
     def component(self, key: Component) -> str:

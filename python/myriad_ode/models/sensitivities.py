@@ -39,11 +39,11 @@ def _with_jumps_apart(model: RecordedModel, names: Sequence[str]) -> RecordedMod
     return model.with_jumps_apart(moves)
 
 
-def with_sensitivities(model: AnyModel, by: SomeComponents, control: bool = True) -> WithSensitivities:
-    """The model with the derivatives of its solution by some of its components, initial states, parameters and shared
-    values, and by `my.t_begin` and `my.t_end`. Their errors take part in choosing the steps unless `control` is
-    False. `solve(model, ..., sensitivities=[k, x])` makes one."""
-    return WithSensitivities(model, by, control)
+def with_sensitivities(model: AnyModel, free: SomeComponents, control: bool = True) -> WithSensitivities:
+    """The model with the derivatives of its solution by the components that are free: initial states, parameters and
+    shared values, and `my.t_begin` and `my.t_end`. Their errors take part in choosing the steps unless `control` is
+    False. `solve(model, ..., free=[k, x])` makes one."""
+    return WithSensitivities(model, free, control)
 
 
 class WithSensitivities(Extended):
@@ -52,7 +52,7 @@ class WithSensitivities(Extended):
 
     not_interpreted = "it has sensitivities"
 
-    def __init__(self, model: AnyModel, by: SomeComponents, control: bool = True) -> None:
+    def __init__(self, model: AnyModel, free: SomeComponents, control: bool = True) -> None:
         line = at(users_line())
         own = Components(model)
         if isinstance(model, Extended):
@@ -62,7 +62,7 @@ class WithSensitivities(Extended):
             raise Error(f"the model has a mass matrix{line}, with which initial values of algebraic states would not "
                         "be independent: solve its algebraic equations in the others")
         kinds_of = ("state", "parameter", "shared")
-        wanted = listed(by)
+        wanted = listed(free)
         names = [name_of_derivative(own, one) for one in wanted]
         possible = [name for name in own.of(kinds_of) if name not in own.tables]
         both = next((name for name in ends_of_domain.values() if name in names and name in own.place), None)
@@ -76,7 +76,7 @@ class WithSensitivities(Extended):
         twice = next((name for name in names if names.count(name) > 1), None)
         if not names or twice is not None:
             what = f"'{twice}' is there twice" if twice else "no component is named"
-            raise Error(f"sensitivities={wanted!r}{line}: {what}; name each component once, as in sensitivities=[k, x]")
+            raise Error(f"free={wanted!r}{line}: {what}; name each component once, as in free=[k, x]")
         for what in ("writes_parameters", "writes_time_domain"):
             if getattr(model, what):
                 raise Error(f"the hooks of the model assign {what[7:].replace('_', ' ')}{line}, and what they assign "
@@ -84,7 +84,7 @@ class WithSensitivities(Extended):
         if isinstance(model, RecordedModel):
             model = _with_jumps_apart(model, names)
         own = Components(model)
-        self.by = names
+        self.free = names
         self.control = control  #: whether errors of derivatives take part in choosing the steps
         self.n_original = len(own.states)
         self.places = [own.place.get(name, ("domain", 0)) for name in names]
@@ -100,13 +100,13 @@ class WithSensitivities(Extended):
         text, struct = self.model.source()
         wrt = ", ".join(f"myriad::time_domain::{name}" if kind == "domain" else
                         f"static_cast<decltype({struct}::n_{kind})>({number})"
-                        for name, (kind, number) in zip(self.by, self.places))
+                        for name, (kind, number) in zip(self.free, self.places))
         template = "with_sensitivities" if self.control else "uncontrolled_sensitivities"
         return (f"{text}\n#include <myriad/sensitivity.hpp>\n"
                 f"using {struct}_sensitivities = myriad::{template}<{struct}, {wrt}>;\n"), f"{struct}_sensitivities"
 
     def __repr__(self) -> str:
-        return f"<sensitivities of {self.model!r} by {', '.join(self.by)}>"
+        return f"<sensitivities of {self.model!r} by {', '.join(self.free)}>"
 
 
 def note_on(model: AnyModel) -> str | None:

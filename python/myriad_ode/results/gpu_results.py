@@ -10,11 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .. import _core
-from ..base.component_kinds import of_instances
 from ..base.errors import Error
-from ..models.components import name_of
 from ..sweeps.gpu_inputs import cuda
-from ..symbolic.symbols import time
 
 if TYPE_CHECKING:
     from ..symbolic.types import Component
@@ -57,18 +54,18 @@ class DeviceResults:
         self._run = run
 
     def __getitem__(self, name: Component) -> DeviceArray:
-        run = self._run
-        name = name if name is time else name_of(name)
-        kind, number = run._components.place.get(name, (name, 0))
-        if name in run._sampled:
-            return self.samples(name)
-        elif name in run._recorded:
-            make = functools.partial(run._records.records, *run._recorded[name], on_device=True)
-        elif kind in (*of_instances, "t", "status", "phases_done"):
-            make = functools.partial(run._ensemble.device_array, kind, number)
-        else:
-            raise KeyError(f"there is no {name!r} on the GPU: ask run[{name!r}]")
-        return _on_gpu(name, make)
+        return self._named(self._run._find(name))
+
+    def of_component(self, name: str) -> DeviceArray:
+        """What a component stands for by itself, whatever else has its name."""
+        return self._named(self._run._of_component(name) or name)
+
+    def _named(self, found: str) -> DeviceArray:
+        make = self._run._quantities[found].device
+        if make is None:
+            instead = ", or run.device[\"status_codes\"]" if found == "status" else ""
+            raise KeyError(f"there is no {found!r} on the GPU: ask run[{found!r}]{instead}")
+        return _on_gpu(found, make)
 
     def samples(self, name: str | None) -> DeviceArray:
         """The samples of a state, or their times."""

@@ -3,13 +3,29 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Protocol
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 if TYPE_CHECKING:
     from ..models.components import Components
     from ..sweeps.sweep import Sweep
     from ..symbolic.expression import Node
     from ..symbolic.types import Array, Component
+
+
+class Quantity(NamedTuple):
+    """One quantity: how it is read, and where it is on a GPU; what it is along behind the instances, "phase" or
+    "sample"; its unit, and what it is in words; whether each instance has its own; whether it is an input; and whether
+    datasets have it."""
+
+    read: Callable[[], Any]
+    along: str | None = None
+    device: Callable[[], Any] | None = None
+    unit: str = ""
+    long_name: str = ""
+    of_instances: bool = True
+    is_input: bool = False
+    listed: bool = True
 
 
 class Results(Protocol):
@@ -20,14 +36,18 @@ class Results(Protocol):
     _records: Any
     _recorded: dict[str, tuple[str, int]]
     _sampled: dict[str, int]
+    _inputs: dict[str, Any]
+    _domain: tuple[Any, Any]
+    _records_time: bool
     sweep: Sweep | None
     report: Any
+    from_phase: int
 
-    def __getitem__(self, name: Component) -> Array: ...
+    def __getitem__(self, key: Component) -> Array: ...
     @property
     def size(self) -> int: ...
     @property
-    def status(self) -> Array: ...
+    def status_codes(self) -> Array: ...
     @property
     def states(self) -> dict[str, Array]: ...
     @property
@@ -36,6 +56,12 @@ class Results(Protocol):
     def records(self) -> dict[str, Array]: ...
     @property
     def samples(self) -> dict[str, Array]: ...
-    def _place_of(self, expression: Node) -> str | None: ...
-    def _output(self, expression: Node) -> Array: ...
+    @property
+    def _called(self) -> dict[str, str]: ...
+    @property
+    def _quantities(self) -> dict[str, Quantity]: ...
+    def _find(self, key: Component) -> str: ...
+    def _of_component(self, name: str) -> str | None: ...
+    def _values_of(self, component: str) -> Array: ...
+    def _places_of(self, expression: Node) -> list[str | None]: ...
     def _output_at(self, place: str | None, expression: Node) -> Array: ...

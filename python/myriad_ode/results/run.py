@@ -3,23 +3,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Literal, NoReturn
+import functools
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
 from .. import _core
 from ..base import component_kinds as kinds
 from ..base.core_words import in_words
-from ..base.errors import Error
+from ..base.errors import Error, renamed
 from ..base.statuses import first_failure, status_names
 from ..models.components import name_of
 from ..sweeps.gpu_inputs import DeviceInput
 from ..sweeps.sweep import Sweep
 from ..symbolic.evaluate import evaluate
-from ..symbolic.expression import symbols_of
+from ..symbolic.expression import Node, symbols_of
 from ..symbolic.symbols import time
 from .gpu_results import DeviceResults
+from .protocol import Quantity
+from .quantities import called, listed, names_of_symbol, of_component, quantities_of, times, unknown_quantity
 from .run_plots import Plots, html
 from .sensitivities import Sensitivities
 
@@ -28,11 +31,11 @@ if TYPE_CHECKING:
     import xarray
 
     from ..models.components import Components
-    from ..symbolic.expression import Node
     from ..symbolic.types import Array, Component
 
-# What datasets and tables call what they have besides components, whose names there get a _ behind.
-_own_names = ("instance", "phase", "sample", "time", "t_last", "status")
+# What was called otherwise before, and what it is called now.
+_renamed = {"t": "t_last", "sample_times": "t_sample", "steps": "accepted_steps, rejected_steps, located_steps or "
+            "rhs_evaluations, which are arrays"}
 
 
 class Interrupted(KeyboardInterrupt):
@@ -83,22 +86,32 @@ class Report:
 
 
 class Run(Mapping):
-    """The results of one call of `solve`, a mapping from names to arrays. `run["x"]` has one row per instance: for a
-    sampled state one column per sample, for a recorded component one column per phase, and for others the value at the
-    end, or the value of an input. Its length is the number of names; `size` is the number of instances.
-    Arrays are views of the core's memory, not copies. Results of a GPU are copied to the host when they are
-    first asked for."""
+    """The results of one call of `solve`, a mapping from names to arrays, with the names that studies, datasets, tables
+    and files have. Of a component x, `run["x"]` are the values at recorded phases, one row per instance and one column
+    per phase, `run["x_sample"]` samples, one column per sample, `run["x_end"]` the value at the end, and
+    `run["x_start"]` the initial value; parameters and shared values are as they were given. The times are "t",
+    "t_sample" and "t_last", the time at which the last phase ended. "status" says in words how instances ended.
+
+    A component alone, as `run[x]`, is what was recorded of it, else its samples, else its value at the end;
+    `run[my.time]` are the times of these. A component whose name means something else here has its kind in front, as
+    "state_t". The length of a run is the number of names; `size` is the number of instances. Arrays are views of the
+    core's memory, not copies. Results of a GPU are copied to the host when they are first asked for."""
 
     def __init__(self, components: Components, ensemble: Any, report: Any, kernel: Any, sweep: Any,
-                 inputs: dict[str, Any], recorded: dict[str, tuple[str, int]], sampled: dict[str, int], seconds: float,
-                 from_phase: int, notes: Sequence[str] = ()) -> None:
+                 inputs: dict[str, Any], domain: tuple[Any, Any], recorded: dict[str, tuple[str, int]],
+                 sampled: dict[str, int], seconds: float, record: Any, notes: Sequence[str] = ()) -> None:
         self._components, self._ensemble, self._records = components, ensemble, report
-        self._recorded, self._sampled, self._inputs = recorded, sampled, inputs
+        self._recorded, self._sampled, self._inputs, self._domain = recorded, sampled, inputs, domain
+        self._records_time = record.time
         self.sweep = sweep if isinstance(sweep, Sweep) else None
         self.report = Report(report, kernel, seconds, notes)
-        self.from_phase = from_phase  #: number of the first recorded phase
+        self.from_phase = record.from_phase  #: number of the first recorded phase
         self.units = components.units  #: of components and outputs, where the model knows them
         self.time_unit = components.time_unit  #: empty where it is not known
+
+    if not TYPE_CHECKING:
+        def __getattr__(self, name: str) -> NoReturn:
+            raise AttributeError(renamed("run", name, _renamed), name=name, obj=self)
 
     @property
     def size(self) -> int:
@@ -112,7 +125,12 @@ class Run(Mapping):
 
     @property
     def status(self) -> Array:
-        """How each instance ended, as numbers into `my.status_names`."""
+        """How each instance ended, in words: "success", "max_steps" and others."""
+        return self["status"]
+
+    @property
+    def status_codes(self) -> Array:
+        """The same as numbers into `my.status_names`, in a byte of memory each."""
         return self._ensemble.array("status")
 
     @property
@@ -124,10 +142,10 @@ class Run(Mapping):
     @property
     def failed(self) -> Array:
         """True for each instance that ended with a failure."""
-        return self.status >= first_failure
+        return self.status_codes >= first_failure
 
     @property
-    def t(self) -> Array:
+    def t_last(self) -> Array:
         """The time at which the last phase of each instance ended."""
         return self._ensemble.array("t")
 
@@ -137,13 +155,33 @@ class Run(Mapping):
         return self._ensemble.array("phases_done")
 
     @property
+    def accepted_steps(self) -> Array:
+        """The number of accepted steps of each instance."""
+        return self._ensemble.array("accepted_steps")
+
+    @property
+    def rejected_steps(self) -> Array:
+        """The number of rejected steps of each instance."""
+        return self._ensemble.array("rejected_steps")
+
+    @property
+    def located_steps(self) -> Array:
+        """The number of steps of each instance that were redone to locate events."""
+        return self._ensemble.array("located_steps")
+
+    @property
+    def rhs_evaluations(self) -> Array:
+        """How often the right-hand side of each instance was evaluated."""
+        return self._ensemble.array("rhs_evaluations")
+
+    @property
     def stored_samples(self) -> Array:
         """The number of samples of each instance."""
         self._require_samples()
         return self._ensemble.stored_samples()
 
     @property
-    def sample_times(self) -> Array:
+    def t_sample(self) -> Array:
         """The times of the samples, one row per instance; NaN beyond those stored."""
         self._require_samples()
         return self._ensemble.samples(-1)
@@ -151,15 +189,6 @@ class Run(Mapping):
     def _require_samples(self) -> None:
         if not self._sampled:
             raise Error("no samples were taken: give samples= to solve")
-
-    def steps(self, kind: Literal["accepted", "rejected", "located", "evaluations"] = "accepted") -> Array:
-        """Steps of each instance: "accepted", "rejected" or "located" (redone to locate events); or "evaluations" of
-        the right-hand side."""
-        names = {"accepted": "accepted_steps", "rejected": "rejected_steps", "located": "located_steps",
-                 "evaluations": "rhs_evaluations"}
-        if kind not in names:
-            raise Error(f"there are no {kind!r} steps: choose one of {', '.join(names)}")
-        return self._ensemble.array(names[kind])
 
     def _last_values(self, some_kinds: Iterable[str]) -> dict[str, Array]:
         """The components of some kinds by name."""
@@ -197,8 +226,8 @@ class Run(Mapping):
 
     @property
     def records(self) -> dict[str, Array]:
-        """What was recorded at the end of each phase, by name: one row per instance, one column per phase; NaN (0 of
-        integers) after an instance has ended."""
+        """What was recorded of components at the end of each phase, by name: one row per instance, one column per
+        phase; NaN (0 of integers) after an instance has ended."""
         return {name: self._records.records(kind, c) for name, (kind, c) in self._recorded.items()}
 
     @property
@@ -208,10 +237,10 @@ class Run(Mapping):
 
     @property
     def sensitivity(self) -> Sensitivities:
-        """Derivatives of the results, if `sensitivities=` was given: `run.sensitivity[x, k]` has the shape of
+        """Derivatives of the results, if `free=` was given: `run.sensitivity[x, k]` has the shape of
         `run[x]`, `run.sensitivity[x]` one more axis behind it, for all components that they are by."""
         if not self._components.derivatives_by:
-            raise Error("the run has no sensitivities: give sensitivities= to solve, as in sensitivities=[k, x]")
+            raise Error("the run has no sensitivities: give free= to solve, as in free=[k, x]")
         return Sensitivities(self, self._components.derivatives_by)
 
     @property
@@ -220,71 +249,82 @@ class Run(Mapping):
         take without a copy."""
         return DeviceResults(self)
 
-    def __getitem__(self, name: Component) -> Array:
-        if name is time:
-            return self._times()
-        name = name_of(name)
-        if name in self._sampled:
-            return self._ensemble.samples(self._sampled[name])
-        if name in self._recorded:
-            return self._records.records(*self._recorded[name])
-        place = self._components.place.get(name, (None,))
-        if place[0] in kinds.of_instances:  # and of a GPU's results no others
-            return self._ensemble.array(*place)
-        if name in self.shared:
-            return self.shared[name]
-        if name in self._components.aliases:
-            return self[self._components.aliases[name]]
-        if name in self._components.outputs:
-            return self._output(self._components.outputs[name])
-        raise KeyError(f"there is no {name!r}: the model has {', '.join(self._names())}")
+    @functools.cached_property
+    def _called(self) -> dict[str, str]:
+        """What results call components and outputs."""
+        components = self._components
+        return called({kind: [name for name in names if name not in components.tables]
+                       for kind, names in components.names.items()}, components.outputs)
 
-    def _times(self) -> Array:
-        """The recorded times, or the times of the samples."""
-        for place in self._recorded.values():
-            if place == ("time", 0):
-                return self._records.records(*place)
-        if self._sampled:
-            return self.sample_times
-        raise KeyError("the times were not recorded: give record=dict(..., time=True) or samples= to solve")
+    @functools.cached_property
+    def _quantities(self) -> dict[str, Quantity]:
+        return quantities_of(self)
 
-    def _place_of(self, expression: Node) -> str | None:
-        """Where the values of an expression are known: along "sample" or "phase", or None for the end alone."""
+    def _of_component(self, name: str) -> str | None:
+        """The name of what a component or output stands for by itself."""
+        name = self._components.aliases.get(name, name)
+        return of_component([self._called[name]], self._quantities) if name in self._called else None
+
+    def _find(self, key: Component) -> str:
+        """The name of the quantity that a name, a symbol or `my.time` stands for."""
+        if isinstance(key, str) and key in self._quantities:
+            return key
+        found = None
+        if key is not time:
+            found = self._of_component(name_of(key))
+            if found is None and isinstance(key, Node):
+                found = of_component(names_of_symbol(key), self._quantities)
+        if key is time or found is None and isinstance(key, str) and key == "t":
+            found = next(name for name in times if name in self._quantities)
+        if found is None:
+            raise unknown_quantity(name_of(key), list(self))
+        return found
+
+    def __getitem__(self, key: Component) -> Array:
+        return self._quantities[self._find(key)].read()
+
+    def _values_of(self, component: str) -> Array:
+        """The values of a component or output, whatever else has its name. Those of states and accessories are found
+        without what all quantities take to be listed, as functions of arrays ask for them in many short calls."""
+        if component in self._recorded:
+            return self._records.records(*self._recorded[component])
+        if component in self._sampled:
+            return self._ensemble.samples(self._sampled[component])
+        kind, number = self._components.place.get(component, ("", 0))
+        if kind in kinds.recorded:
+            return self._ensemble.array(kind, number)
+        return self._quantities[self._of_component(component) or component].read()
+
+    def _places_of(self, expression: Node) -> list[str | None]:
+        """Where the values of an expression are known: along "phase" or "sample", and None for the end."""
         symbols = symbols_of([expression])
         states = [s.value[1] for s in symbols if s.value[0] == "state"]
         of_time = any(s is time for s in symbols)
-        if not states and not of_time:
-            return None
-        if self._sampled and all(n in self._sampled for n in states):
-            return "sample"
-        has_times = any(kind == "time" for kind, _ in self._recorded.values())
-        if self._recorded and all(n in self._recorded for n in states) and (has_times or not of_time):
-            return "phase"
-        return None
-
-    def _output(self, expression: Node) -> Array:
-        """The values of an expression: at the samples, or where records are, or at the end."""
-        return self._output_at(self._place_of(expression), expression)
+        places: list[str | None] = [None]
+        if self._sampled and (states or of_time) and all(n in self._sampled for n in states):
+            places.insert(0, "sample")
+        if (states or of_time) and all(n in self._recorded for n in states) and (self._records_time or not of_time):
+            places.insert(0, "phase")
+        return places
 
     def _output_at(self, place: str | None, expression: Node) -> Array:
-        """The values of an expression at a place that `_place_of` has told."""
-        times: Any
+        """The values of an expression at a place that `_places_of` has told."""
+        at: Any
         if place == "sample":
-            times, states = self.sample_times, self.samples
-            shape = times.shape
+            at, states = self["t_sample"], self.samples
+            shape = at.shape
         elif place == "phase":
-            times = next((self._records.records(*p) for p in self._recorded.values() if p == ("time", 0)), None)
-            states = self.records
-            shape = next(iter(states.values())).shape
+            at, states = self["t"] if self._records_time else None, self.records
+            shape = (at if at is not None else next(iter(states.values()))).shape
         else:
-            times, states, shape = self.t, self.states, (self.size,)
+            at, states, shape = self["t_last"], self.states, (self.size,)
         known: dict[Any, Any] = {}
         for symbol in symbols_of([expression]):
             kind, name = symbol.value
             if symbol in self._components.constants:
                 known[symbol] = self._components.constants[symbol]
             elif symbol is time:
-                known[symbol] = times
+                known[symbol] = at
             elif kind == "state":
                 known[symbol] = states[name]
             elif kind == "parameter":
@@ -294,17 +334,11 @@ class Run(Mapping):
         result, = evaluate([expression], known)
         return np.array(np.broadcast_to(result, shape))
 
-    def _names(self) -> list[str]:
-        """The names of all components that have results, and of recorded times."""
-        without = {*self._components.tables, *self._components.hidden}
-        return list(dict.fromkeys([*(n for n in self._components.place if n not in without), *self._recorded,
-                                   *self._components.outputs]))
-
     def __iter__(self) -> Iterator[str]:
-        return iter(self._names())
+        return iter(listed(self._quantities))
 
     def __len__(self) -> int:
-        return len(self._names())
+        return len(listed(self._quantities))
 
     def __contains__(self, name: object) -> bool:
         try:
@@ -314,7 +348,7 @@ class Run(Mapping):
         return True
 
     def _ipython_key_completions_(self) -> list[str]:
-        return self._names()
+        return list(self)
 
     # two runs are equal if they are the same, as their arrays have no single truth value
     __eq__, __hash__ = object.__eq__, object.__hash__
@@ -323,111 +357,73 @@ class Run(Mapping):
         raise Error("the results of a run cannot be pickled or copied: pickle run.to_xarray(), or the arrays that you "
                     "need")
 
-    @staticmethod
-    def _free(name: str, taken: Container[str]) -> str:
-        while name in taken:
-            name += "_"
-        return name
-
-    def _column(self, name: str) -> str:
-        """The name of a component's result in a dataset or table, which have names of their own."""
-        return self._free(f"{name}_", self._components.place) if name in _own_names else name
-
-    def _in_dataset(self, name: str) -> str:
-        """The name of an input in a dataset, where a state's own name stands for its result."""
-        if name in self._components.states:
-            return self._free(f"{name}_start", self._components.place)
-        return self._column(name) if name in self._components.place else name
+    def _axis(self, name: str) -> str:
+        """The name of an axis of the sweep in a dataset."""
+        kind, _ = self._components.place.get(self._components.aliases.get(name, name), ("", 0))
+        called = self._called.get(self._components.aliases.get(name, name), name)
+        return f"{called}_start" if kind in kinds.recorded else called
 
     def _axes(self) -> tuple[list[str], tuple[int, ...]]:
         """The dimensions of the instances and their lengths."""
         if self.sweep is None or not self.sweep.axes:
             return ["instance"], (self.size,)
-        return [self._in_dataset(name) for name, _ in self.sweep.axes], tuple(self.sweep.shape)
+        return [self._axis(name) for name, _ in self.sweep.axes], tuple(self.sweep.shape)
 
     def to_xarray(self) -> xarray.Dataset:
-        """The results as an `xarray.Dataset`: records along `phase`, samples along `sample`, and along `instance`, or
-        the axes of a grid, whose values are coordinates, as are parameters. A component with a name that the dataset
-        has for something else, such as `phase`, has a _ behind it."""
+        """The results as an `xarray.Dataset` with the names of the run: along `instance`, or the axes of a grid, and
+        then along `phase` or `sample`. What instances were given are coordinates."""
         try:
             import xarray
         except ImportError:
             raise Error("to_xarray needs the package xarray: `pip install xarray`") from None
         dims, lengths = self._axes()
-
-        units = self._components.units
-
-        def unstacked(array: Array, *more: str, of: str | None = None
-                      ) -> tuple[tuple[str, ...], Array, dict[str, str]]:
-            return (*dims, *more), array.reshape(*lengths, *array.shape[1:]), (
-                {"units": units[of]} if of is not None and of in units else {})
-
+        along = {} if self.sweep is None else {self._axis(name): (self._axis(axis), np.asarray(values))
+                                               for name, (axis, values) in self.sweep.coordinates.items()}
         variables: dict[str, Any] = {}
         coordinates: dict[str, Any] = {}
-        for name, array in self.records.items():
-            variables[self._column(name)] = unstacked(array, "phase", of=name)
-        for name, array in self.samples.items():
-            other = self._free(f"{name}_samples", self._components.place)
-            variables[other if name in self._recorded else self._column(name)] = unstacked(array, "sample", of=name)
-        if self._sampled:
-            dimensions, times = unstacked(self.sample_times, "sample")[:2]
-            coordinates["time"] = dimensions, times, (
-                {"units": self._components.time_unit} if self._components.time_unit else {})
-        for name, array in {**self.states, **self.accessories}.items():
-            variables.setdefault(self._column(name), unstacked(array, of=name))
-        for name, expression in self._components.outputs.items():
-            place = self._place_of(expression)
-            variables.setdefault(self._column(name), unstacked(self[name], *([place] if place else []), of=name))
-        variables["t_last"] = (*unstacked(self.t)[:2], {"long_name": "time at which the last phase ended"})
-        variables["status"] = (*unstacked(self.status)[:2], {
-            "flag_values": np.arange(len(status_names), dtype=np.uint8), "flag_meanings": " ".join(status_names)})
-        if self._recorded:
-            phases = next(iter(self.records.values())).shape[1]
-            coordinates["phase"] = np.arange(self.from_phase, self.from_phase + phases)
-        along = {} if self.sweep is None else self.sweep.coordinates
-        for name, (axis, values) in along.items():
-            coordinates[self._in_dataset(name)] = (self._in_dataset(axis), np.asarray(values),
-                                                   {"units": units[name]} if name in units else {})
-        for name, array in self.parameters.items():
-            if name not in along:
-                coordinates[self._column(name)] = unstacked(array, of=name)
-        coordinates.update((self._column(name), value) for name, value in self.shared.items())
-        for name, value in self.start.items():
-            if name not in along and not isinstance(value, DeviceInput) and np.ndim(value) == 1:
-                coordinates[self._in_dataset(name)] = unstacked(value, of=name)
+        for name, quantity in self._quantities.items():
+            if not quantity.listed:
+                continue
+            about = {"units": quantity.unit, "long_name": quantity.long_name}
+            attributes = {key: text for key, text in about.items() if text}
+            more = [quantity.along] if quantity.along else []
+            made: tuple[Any, Any]
+            if name in along:
+                made = along[name]
+            elif quantity.of_instances:
+                array = quantity.read()
+                made = (*dims, *more), array.reshape(*lengths, *array.shape[1:])
+            else:
+                made = tuple(more), quantity.read()
+            (coordinates if quantity.is_input else variables)[name] = (*made, attributes)
         return xarray.Dataset(variables, coordinates, {"myriad_version": _core.version})
 
     def to_pandas(self) -> pandas.DataFrame:
-        """The results as a `pandas.DataFrame`: one row for each instance and recorded phase, or each instance and
-        sample, or each instance, with the parameters as columns. A component with the name of another
-        column, such as `phase`, has a _ behind it."""
+        """The results as a `pandas.DataFrame` with the names of the run: one row for each instance and recorded phase,
+        or each instance and sample, or each instance, with the parameters as columns."""
         try:
             import pandas
         except ImportError:
             raise Error("to_pandas needs the package pandas: `pip install pandas`") from None
-        if self._recorded and self._sampled:
+        recorded = bool(self._recorded or self._records_time)
+        if recorded and self._sampled:
             raise Error("records by phase and samples do not fit into one table: use to_xarray()")
-        long = dict(self.records) or dict(self.samples)
-        columns = next(iter(long.values())).shape[1] if long else 1
-        table = {"instance": np.repeat(np.arange(self.size), columns)}
-        if self._recorded:
-            table["phase"] = np.tile(np.arange(self.from_phase, self.from_phase + columns), self.size)
+        along = "phase" if recorded else "sample" if self._sampled else None
+        chosen = {name: quantity.read() for name, quantity in self._quantities.items()
+                  if quantity.listed and quantity.along == along and not quantity.is_input and name != "status"}
         if self._sampled:
-            table["time"] = self.sample_times.ravel()
-        for name, array in self.parameters.items():
-            table[self._column(name)] = np.repeat(array, columns)
-        table.update((self._column(name), array.ravel()) for name, array in long.items())
-        for name, array in {**self.states, **self.accessories}.items():
-            if not long:
-                table[self._column(name)] = array
-        for name in self._components.outputs:
-            array = self[name]
-            if array.ndim == 2 or not long:
-                table[self._column(name)] = array.ravel()
-        names = pandas.Categorical.from_codes(self.status, status_names)
-        table["status"] = names.repeat(columns)
+            chosen = {"t_sample": self.t_sample, **chosen}
+        columns = next(iter(chosen.values())).shape[1] if along and chosen else 1
+        table = {"instance": np.repeat(np.arange(self.size), columns)}
+        if recorded:
+            table["phase"] = np.tile(self["phase"], self.size)
+        for name in map(self._called.__getitem__, self._components.names["parameter"]):
+            if name in self._quantities:  # but what a GPU was given and hooks have changed
+                table[name] = np.repeat(np.broadcast_to(self[name], self.size), columns)
+        table.update((name, array.ravel()) for name, array in chosen.items())
+        table["status"] = pandas.Categorical.from_codes(self.status_codes, status_names).repeat(columns)
         frame = pandas.DataFrame(table)
-        return frame.dropna(subset=["time"]).reset_index(drop=True) if self._sampled else frame
+        return frame.dropna(subset=["t_sample"]).reset_index(drop=True) if self._sampled else frame
 
     @property
     def plot(self) -> Plots:

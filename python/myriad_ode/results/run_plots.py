@@ -57,7 +57,8 @@ class Plots:
         if sorted((x, y)) != sorted(name for name, values in (run.sweep.axes if along else ()) if len(values) > 1):
             raise Error(f"the sweep is no grid over {x} and {y} alone (its axes: {', '.join(along) or 'none'}): make "
                         f"it by my.grid({x}=..., {y}=...)")
-        values = np.asarray(run.status if z == "status" else run.records[z][:, phase] if z in run.records else run[z])
+        values = np.asarray(run.status_codes if z == "status" else
+                            run.records[z][:, phase] if z in run.records else run[z])
         if values.ndim == 2:
             values = values[:, -1]
         if z != "status":
@@ -88,7 +89,7 @@ class Plots:
         if y not in run.samples:
             raise Error(f"there are no samples of {y}: give samples=, as in samples=200, to solve")
         xlabel = f"t ({run.time_unit})" if run.time_unit else None
-        return plots.time_series(run.sample_times[chosen], run.samples[y][chosen], labels=labels, xlabel=xlabel,
+        return plots.time_series(run.t_sample[chosen], run.samples[y][chosen], labels=labels, xlabel=xlabel,
                                  ylabel=self._label(y), axes=axes, **style)
 
     def phase_portrait(self, x: Component, y: Component, *, instances: npt.ArrayLike | None = None,
@@ -106,7 +107,7 @@ class Plots:
 
     def statuses(self, *, axes: Axes | None = None) -> Any:
         """How many instances ended in which way."""
-        return plots.statuses(self._run.status, status_names, axes=axes)
+        return plots.statuses(self._run.status_codes, status_names, axes=axes)
 
 
 def html(run: Results) -> str:

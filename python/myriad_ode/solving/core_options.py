@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import dataclasses
 import inspect
-import itertools
 import math
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
@@ -162,9 +161,6 @@ def _set_records(options: _core.Options, record: Any, components: Components) ->
         places.update((components.names[kind][c], (kind, c)) for c in a + b)
     made.time = bool(record.get("time", False))
     made.from_phase = _whole(record.get("from_phase", 0), "record from_phase", _rows["record.from_phase"])
-    if made.time:
-        of_time = itertools.chain(("t", "time"), (f"time_{i}" for i in itertools.count(1)))
-        places[next(n for n in of_time if n not in components.place)] = ("time", 0)
     return places
 
 

@@ -28,7 +28,7 @@ def _derivatives_of(model: WithSensitivities, chosen: Any, components: Component
     given = listed(chosen)
     names = [components.component(one) for one in given]
     have = [n for n in names if components.place.get(n, ("",))[0] in ("state", "accessory")]
-    return [*given, *(f"{n}_by_{k}" for k in model.by for n in have if f"{n}_by_{k}" in components.place)]
+    return [*given, *(f"{n}_by_{k}" for k in model.free for n in have if f"{n}_by_{k}" in components.place)]
 
 
 def with_derivatives(model: WithSensitivities, given: Options, components: Components) -> Options:
@@ -41,7 +41,7 @@ def with_derivatives(model: WithSensitivities, given: Options, components: Compo
             if key in chosen:
                 chosen[key] = _derivatives_of(model, chosen[key], components)
         if chosen.get("time"):  # whose derivatives outputs need
-            chosen["accessories"] = [*chosen.get("accessories", ()), *(f"time_by_{k}" for k in model.by)]
+            chosen["accessories"] = [*chosen.get("accessories", ()), *(f"time_by_{k}" for k in model.free)]
         record = chosen
     if isinstance(samples, Mapping) and "states" in samples:
         samples = {**samples, "states": _derivatives_of(model, samples["states"], components)}
@@ -58,7 +58,7 @@ def _tolerances(model: WithSensitivities, value: Any, components: Components, na
     of_states = per_state(own, Components(model.model), name, model.n_original)
     if len(of_states) == 1:
         of_states = of_states * model.n_original
-    of_derivatives = dict(zip(derivatives_of, of_states * len(model.by)))
+    of_derivatives = dict(zip(derivatives_of, of_states * len(model.free)))
     of_derivatives.update((c, real(t, f"{name} of '{c}'")) for c, t in named.items() if c in of_derivatives)
     return [*of_states, *(t if model.control else _not_controlled for t in of_derivatives.values())]
 
@@ -67,15 +67,15 @@ def start_derivatives(model: WithSensitivities, given: Collection[str]) -> dict[
     """The derivatives of initial values that follow from components that sensitivities are by, as defaults of the
     derivatives at the start; refuses parameters that follow from them."""
     own = Components(model.model)
-    starts_with = {k: "t" if k == ends_of_domain[t_begin] else k for k in model.by}  # what defaults read
+    starts_with = {k: "t" if k == ends_of_domain[t_begin] else k for k in model.free}  # what defaults read
     for name in own.of(("parameter", "shared")):
-        if name not in model.by and own.follows(name, starts_with.values(), given):
+        if name not in model.free and own.follows(name, starts_with.values(), given):
             raise Error(f"the value of '{name}' follows from components that sensitivities are by: give it in the "
                         "sweep")
     found: dict[str, Any] = {}
 
     def derivative(name: str, k: str) -> Any:
-        if name in given or name in model.by or not own.follows(name, [starts_with[k]], given):
+        if name in given or name in model.free or not own.follows(name, [starts_with[k]], given):
             return folding.constant(float(name == k))
         default = own.defaults[name]
         by_time = k == ends_of_domain[t_begin]
@@ -88,7 +88,7 @@ def start_derivatives(model: WithSensitivities, given: Collection[str]) -> dict[
                               for i, partial in partials[0].items()])
 
     for name in own.of(("state", "accessory")):
-        if name not in given and name not in model.by:
+        if name not in given and name not in model.free:
             found |= {f"{name}_by_{k}": derivative(name, k)
-                      for k in model.by if own.follows(name, [starts_with[k]], given)}
+                      for k in model.free if own.follows(name, [starts_with[k]], given)}
     return found

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .. import _core
-from ..base import component_kinds as kinds
 from ..base.core_words import with_event_names
 from ..base.errors import Error
 from ..kernels.choose import kernel_for
@@ -49,7 +48,7 @@ class _Call:
     failure: BaseException | None
 
     def __init__(self, model: AnyModel, method: Method | None, control: Control | Sequence[Control],
-                 precision: Precision, sensitivities: SomeComponents | None, sensitivity_control: bool) -> None:
+                 precision: Precision, free: SomeComponents | None, sensitivity_control: bool) -> None:
         if precision not in ("double", "float"):
             raise Error(f"precision is {precision!r}: give \"double\" or \"float\"")
         if not isinstance(model, AnyModel):
@@ -57,10 +56,10 @@ class _Call:
                         "my.solve(my.model({x: v, v: -x}), ...)")
         self.method, self.control, self.precision = default if method is None else method, control, precision
         self.real = np.dtype("f8" if precision == "double" else "f4")
-        if isinstance(model, WithSensitivities) and sensitivities is None and not sensitivity_control:
-            model = with_sensitivities(model.model, model.by, control=False)
-        self.model: AnyModel = (prepared(model) if sensitivities is None else
-                                with_sensitivities(model, sensitivities, sensitivity_control))
+        if isinstance(model, WithSensitivities) and free is None and not sensitivity_control:
+            model = with_sensitivities(model.model, model.free, control=False)
+        self.model: AnyModel = (prepared(model) if free is None else
+                                with_sensitivities(model, free, sensitivity_control))
         self.components = Components(self.model)
 
     def gather(self, sweep: Sweep | ByComponent | None, start: ByComponent | None, time: tuple[Values, Values] | None,
@@ -127,10 +126,8 @@ class _Call:
 
     def run(self, seconds: float, notes: Sequence[str] = ()) -> Run:
         """What has been computed, in so many seconds. Raises what ended the computation."""
-        inputs = {name: array for name, array in self.given.items()
-                  if self.components.place[name][0] in ("state", "parameter", *kinds.shared)}
-        run = Run(self.components, self.ensemble, self.report, self.kernel, self.sweep, inputs, self.recorded,
-                  self.sampled, seconds, self.core_options.record.from_phase, notes)
+        run = Run(self.components, self.ensemble, self.report, self.kernel, self.sweep, self.given, self.domain,
+                  self.recorded, self.sampled, seconds, self.core_options.record, notes)
         if isinstance(self.model, WithSensitivities) and self.count and (undefined := note(run)) is not None:
             run.report.notes.append(undefined)
         if isinstance(self.failure, KeyboardInterrupt):
@@ -155,7 +152,7 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
           control: Control | Sequence[Control] = (),
           options: Options | None = None, tolerance_scale: Values | None = None, size: int | None = None,
           precision: Precision = "double", device: str | Sequence[str] = "auto", interpreted: bool | None = None,
-          make_consistent: bool = False, progress: Progress = None, sensitivities: SomeComponents | None = None,
+          make_consistent: bool = False, progress: Progress = None, free: SomeComponents | None = None,
           sensitivity_control: bool = True, **others: Unpack[SolveArguments]) -> Run:
     """Integrates a model for all instances of a sweep, and returns a `Run`.
 
@@ -167,8 +164,7 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
                       for each instance; the end may be before the begin
     options           an `Options`, for several calls; those that are given by their names, below, come before it
     record            what to keep at the end of each phase: components, as in `[x, v]`, or
-                      `dict(from_phase=, states=, accessories=, time=)`; `run["t"]` (`run["time"]` if the model has
-                      a t of its own) or `run[my.time]` are the recorded times
+                      `dict(from_phase=, states=, accessories=, time=)`; `run["t"]` are the recorded times
     samples           dense output: a number of evenly spaced times, an array of times, or `dict(states=, evenly= |
                       times= | every=, capacity=, minimum_spacing=, from_phase=)`
     method, control   as in the C++ library: one of `my.methods`, by default "tsitouras_5"; control is one or
@@ -186,7 +182,7 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
                       singular mass matrix, by Newton's method, in directions that leave M y as it is; otherwise values
                       that do not are refused
     progress          True for a bar, or a function of the numbers of instances done and of all
-    sensitivities     components that derivatives of the results are wanted by, as in `[k, x]`: initial states,
+    free              components that derivatives of the results are wanted by, as in `[k, x]`: initial states,
                       parameters and shared values, and `my.t_begin` and `my.t_end`, the ends of the time
                       domain; `run.sensitivity[x, k]` are then the derivatives
     sensitivity_control  whether their errors take part in choosing the steps; without, the solution is that of a call
@@ -200,7 +196,7 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
     begin = clock.perf_counter()
     given = options_of(options, others, solve)
     devices, no_gpu = _devices(device, interpreted)
-    call = _Call(model, method, control, precision, sensitivities, sensitivity_control)
+    call = _Call(model, method, control, precision, free, sensitivity_control)
     call.gather(sweep, start, time, size, given)
     if call.count == 0:
         call.integrate_none()

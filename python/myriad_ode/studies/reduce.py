@@ -13,6 +13,7 @@ import numpy as np
 
 from .. import _core
 from ..base.errors import Error
+from ..base.statuses import in_words
 from ..symbolic.axes import Axis
 
 if TYPE_CHECKING:
@@ -88,10 +89,20 @@ def mean(variable: str) -> Reduction:
     return Reduction("mean_of", _variable(variable))
 
 
+class _OfChunk:
+    """A function of a chunk's arrays, which gets its statuses in words."""
+
+    def __init__(self, function: Callable[[dict[str, Any]], Any]) -> None:
+        self.function = function
+
+    def __call__(self, arrays: dict[str, Any]) -> Any:
+        return self.function({**arrays, "status": in_words(arrays["status"])})
+
+
 def total(name: str, inputs: str | Sequence[str], size: int, function: Callable[[dict[str, Any]], Any]) -> Reduction:
     """The sum over chunks of `size` numbers that a function computes of each chunk: variable `name`. The function gets
-    a dict of arrays, the inputs by name and "status", with a row for each instance of the chunk, failed ones too, and
-    returns the numbers. `name` stands for it in the study's description: give another one when it changes. Threads take
-    turns in calling it; for executors it must pickle."""
+    a dict of arrays, the inputs by name and "status", in words, with a row for each instance of the chunk, failed ones
+    too, and returns the numbers. `name` stands for it in the study's description: give another one when it changes.
+    Threads take turns in calling it; for executors it must pickle."""
     inputs = [inputs] if isinstance(inputs, str) else list(inputs)
-    return Reduction("sum_of", _variable(name), [_variable(i) for i in inputs], int(size), function)
+    return Reduction("sum_of", _variable(name), [_variable(i) for i in inputs], int(size), _OfChunk(function))

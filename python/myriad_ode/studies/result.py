@@ -12,8 +12,11 @@ import numpy as np
 
 from .. import _core
 from ..base.errors import Error
-from ..models.components import name_of, unknown
+from ..base.statuses import first_failure, in_words, status_names
+from ..models.components import name_of
+from ..results.quantities import names_of_symbol, of_component, times, unknown_quantity
 from ..sweeps.inputs import path_text
+from ..symbolic.expression import Node
 from ..symbolic.symbols import time
 from .store_slices import blocks, read_part
 
@@ -33,8 +36,8 @@ class Damage(NamedTuple):
 
 class StudyResult(Mapping):
     """Results by name, a mapping whose length is the number of names: `result["x_end"]` is an array with the axes of
-    the study, and then the phases or samples. Of an axis, and of other coordinates, it is the values. `result[x]` of a
-    component is what was recorded of it, or its last values."""
+    the study, and then the phases or samples. Names are those of a run. Of an axis, and of other coordinates, it is the
+    values. `result[x]` of a component is what was recorded of it, else its samples, else its last values."""
 
     def __init__(self, results: _core.Results, folder: str | None = None,
                  facts: Mapping[str, Any] | None = None) -> None:
@@ -84,23 +87,47 @@ class StudyResult(Mapping):
         return json.loads(self._results.description)
 
     @property
+    def status(self) -> Array:
+        """How each instance ended, in words: "success", "max_steps" and others; "not_started" if it is not done."""
+        return self["status"]
+
+    @property
+    def status_codes(self) -> Array:
+        """The same as numbers into `my.status_names`, in a byte of memory each; 255 of those that are not done."""
+        return self._read(self._find("status"))
+
+    @property
+    def failed(self) -> Array:
+        """True for each instance that ended with a failure."""
+        codes = self.status_codes
+        return (codes >= first_failure) & (codes < len(status_names))
+
+    @property
     def devices(self) -> list[str]:
         """The devices that computed what is in the store."""
         return self._results.devices
 
-    def _name(self, key: Component) -> str:
-        if key is time:
-            return next(n for n in ("t", "t_sample", "t_last") if n in self._variables or n == "t_last")
-        name = name_of(key)
-        for found in (name, f"{name}_end", f"{name}_sample"):
-            if found in self._variables or found in self._coordinates:
-                return found
-        raise KeyError(str(unknown(name, self.names, "variable of the results")))
+    def _find(self, key: Component) -> str:
+        """The name of the variable or coordinate that a name, a symbol or `my.time` stands for."""
+        there = self.names
+        if isinstance(key, str) and key in there:
+            return key
+        if key is time or isinstance(key, str) and key == "t":
+            found = next((name for name in times if name in there), None)
+        else:
+            found = of_component(names_of_symbol(key) if isinstance(key, Node) else [name_of(key)], there)
+        if found is None:
+            raise unknown_quantity("t" if key is time else name_of(key), there)
+        return found
 
     def __getitem__(self, key: Component) -> Array:
-        name = self._name(key)
+        name = self._find(key)
         if name in self._coordinates:
             return self._coordinate(name)
+        values = self._read(name)
+        return in_words(values) if name == "status" else values
+
+    def _read(self, name: str) -> Array:
         _, inner, _, of_instances, _ = self._variables[name]
         if not of_instances:
             return self._results.read(name, 0, 1)[0]
@@ -121,7 +148,7 @@ class StudyResult(Mapping):
 
     def __contains__(self, key: object) -> bool:
         try:
-            return self._name(key) in self.names
+            return self._find(key) in self.names
         except (KeyError, Error):
             return False
 
@@ -165,7 +192,8 @@ class StudyResult(Mapping):
 
     def to_xarray(self) -> xarray.Dataset:
         """The results as an `xarray.Dataset` along the axes of the study. A store is read when its values are used,
-        chunk by chunk. What is not done is NaN, or the attribute `_FillValue` of integers."""
+        chunk by chunk. What is not done is NaN, the attribute `_FillValue` of integers, and "not_started" of statuses,
+        which are words; files have them as numbers, with the flags of the CF conventions."""
         try:
             import xarray
         except ImportError:
@@ -174,6 +202,8 @@ class StudyResult(Mapping):
         coordinates: dict[str, Any] = {}
         for name, (type_name, inner, attributes, of_instances, is_coordinate) in self._written().items():
             dims, lengths = tuple(d for d, _ in inner), tuple(n for _, n in inner)
+            if name == "status":  # which is words here
+                attributes = {key: text for key, text in attributes.items() if not key.startswith("flag_")}
             if not of_instances:
                 made = xarray.Variable(dims, self[name], attributes)
             elif self.folder is None:
@@ -183,7 +213,8 @@ class StudyResult(Mapping):
                 made = xarray.Variable((*self._axes, *dims),
                                        lazy(self.folder, self._results, name, type_name, self.shape, lengths),
                                        attributes)
-            made.encoding["_FillValue"] = self._fill(type_name) if of_instances else None
+            if name != "status":
+                made.encoding["_FillValue"] = self._fill(type_name) if of_instances else None
             (coordinates if is_coordinate else variables)[name] = made
         for name, (along, attributes) in self._coordinates.items():
             if not along or along in self._axes or any(along in v.dims for v in variables.values()):

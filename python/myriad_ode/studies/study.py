@@ -104,7 +104,7 @@ class Study:
                 made.repeat(whole(draws, "draws", 1 << 62), "draw")
             made.seed(whole(seed, "seed", (1 << 63) - 1) & ((1 << 64) - 1))
             check_whole_numbers(model.generate, made.size, self._shared_integers)
-            self._set_kept(made, components, keep, bool(recorded or sampled or reduce))
+            self._set_kept(made, components, keep, bool(recorded or sampled or reduce or core_options.record.time))
             for reduction in reduce if isinstance(reduce, (list, tuple)) else [reduce] if reduce else []:
                 if not isinstance(reduction, Reduction):
                     raise Error(f"reduce= has {reduction!r}: give reductions, as in "
@@ -337,9 +337,8 @@ def study(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
               version of data: a store that was made with other notes is refused
 
     method, control, precision, interpreted, options, record, samples, events, rtol and atol are as in `solve`.
-    Inputs that are not finite mark their instances as invalid_input. Results have the C++ library's names: "x"
-    at recorded phases, "x_sample", "x_end", "t_last", "status"; of initial values of states "x_begin". Raises
-    `my.Error`.
+    Inputs that are not finite mark their instances as invalid_input. Results have the names of a run's: "x" at recorded
+    phases, "x_sample", "x_end", "t_last", "status"; of initial values "x_start". Raises `my.Error`.
 
     The options:"""
     return Study(model, sweep, dict(

@@ -12,6 +12,7 @@ from xarray.backends import BackendArray
 from xarray.core import indexing
 
 from .. import _core
+from ..base.statuses import in_words
 from .store_slices import read_part
 
 if TYPE_CHECKING:
@@ -24,7 +25,9 @@ class StoredVariable(BackendArray):
     def __init__(self, folder: str, results: _core.Results, name: str, dtype: str, lengths: Sequence[int],
                  inner: Sequence[int]) -> None:
         self.folder, self.name, self.lengths = folder, name, tuple(lengths)
-        self.dtype, self.shape = np.dtype(dtype), (*lengths, *inner)
+        self.in_words = name == "status"  # of which a store has numbers
+        self.dtype = in_words(0).dtype if self.in_words else np.dtype(dtype)
+        self.shape = (*lengths, *inner)
         self._results = results
 
     def __getstate__(self) -> dict[str, Any]:
@@ -36,7 +39,8 @@ class StoredVariable(BackendArray):
     def _read(self, key: tuple[Any, ...]) -> Array:
         if self._results is None:
             self._results = _core.open_store(self.folder)
-        return read_part(self._results, self.name, self.lengths, key)
+        part = read_part(self._results, self.name, self.lengths, key)
+        return in_words(part) if self.in_words else part
 
 
 def lazy(folder: str, results: _core.Results, name: str, dtype: str, lengths: Sequence[int],

@@ -25,7 +25,7 @@ class Operation(NamedTuple):
     #: of its result and its arguments, the derivatives by these: None where it does not depend on one, a condition
     #: where the argument is passed on if it holds
     partials: Callable[..., Sequence[Any]] | None = None
-    #: about how many, of a processor
+    #: about how many, of a processor; the same as in kernel/scalar/dependence.hpp
     instructions: int = 1
     #: of a variable with its result, in C++; otherwise the operation's own
     result: str = ""
@@ -67,12 +67,12 @@ operations: dict[str, Operation] = {
     "add": Operation(operator.add, lambda f, a, b: (1, 1), result="sum"),
     "subtract": Operation(operator.sub, lambda f, a, b: (1, -1), result="difference"),
     "multiply": Operation(operator.mul, lambda f, a, b: (b, a), result="product"),
-    "divide": Operation(operator.truediv, lambda f, a, b: (1 / b, -f / b), result="quotient"),
+    "divide": Operation(operator.truediv, lambda f, a, b: (1 / b, -f / b), 8, "quotient"),
     "negate": Operation(operator.neg, lambda f, a: (-1,), result="opposite"),
     "fma": Operation(lambda a, b, c: a * b + c, lambda f, a, b, c: (b, a, 1)),
-    "reciprocal": Operation(lambda x: 1.0 / x, lambda f, a: (-f * f,), result="inverse"),
-    "rsqrt": Operation(lambda x: 1.0 / np.sqrt(x), lambda f, a: (-0.5 * (f * f * f),), result="inverse_root"),
-    "sqrt": Operation(np.sqrt, lambda f, a: (0.5 / f,), result="root", is_singular=True),
+    "reciprocal": Operation(lambda x: 1.0 / x, lambda f, a: (-f * f,), 8, "inverse"),
+    "rsqrt": Operation(lambda x: 1.0 / np.sqrt(x), lambda f, a: (-0.5 * (f * f * f),), 8, "inverse_root"),
+    "sqrt": Operation(np.sqrt, lambda f, a: (0.5 / f,), 8, "root", True),
     "cbrt": Operation(np.cbrt, lambda f, a: (1 / (3 * f * f),), 15, is_singular=True),
     "abs": Operation(np.abs, lambda f, a: (ex.copysign(1.0, a),), result="size"),
     "floor": Operation(np.floor, lambda f, a: (None,)),

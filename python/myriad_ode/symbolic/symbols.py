@@ -39,8 +39,8 @@ typeid typename union unsigned using virtual void volatile wchar_t while xor xor
 # Members that the library looks for in a model by name, and macros of C's headers.
 _reserved = {*kinds.every, *"""observed rhs jacobian events
 observe summaries initialise after_step after_event after_stop finalise generate writes_parameters writes_time_domain
-accessories_are_outputs scalar_only rare_events large_rhs autonomous jacobian_pattern mass_matrix pack_batches
-max_block_size
+accessories_are_outputs scalar_only rare_events large_rhs rhs_weight autonomous jacobian_pattern mass_matrix
+pack_batches max_block_size
 myriad std linux unix errno assert NULL NAN INFINITY EOF BUFSIZ RAND_MAX HUGE_VAL OVERFLOW UNDERFLOW DOMAIN SING PLOSS
 TLOSS stdin stdout stderr major minor alloca offsetof issubnormal math_errhandling sched_priority""".split()}
 _reserved_pattern = re.compile(

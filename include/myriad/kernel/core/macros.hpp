@@ -21,6 +21,10 @@
 /// In the place of MYRIAD_FUNCTION, for what rarely happens: out of line, so that the loop stays short enough for a
 /// GPU's cache of instructions. Arguments are passed by value, as references would give the loop's own data addresses.
 #define MYRIAD_RARE_FUNCTION __host__ __device__ __noinline__
+/// In the place of MYRIAD_FUNCTION, for a long function of which there is to be one copy, on CPUs and GPUs: called with
+/// arguments MYRIAD_CALL_ARGUMENT(type), which are values in registers for a GPU's thread, and references on a CPU.
+#define MYRIAD_CALLED_FUNCTION __host__ __device__ __noinline__
+#define MYRIAD_CALL_ARGUMENT(...) const __VA_ARGS__
 /// A constant at namespace scope that device code reads from constant memory as an operand of its instructions.
 #define MYRIAD_CONSTANT_MEMORY __constant__
 /// An optimisation barrier: what lies in memory that others might change is written before it and read again after it.
@@ -81,6 +85,8 @@
 #endif
 #define MYRIAD_LARGE_FUNCTION MYRIAD_FLATTEN __attribute__((noinline))
 #define MYRIAD_RARE_FUNCTION __attribute__((noinline))
+#define MYRIAD_CALLED_FUNCTION MYRIAD_LARGE_FUNCTION
+#define MYRIAD_CALL_ARGUMENT(...) const __VA_ARGS__&
 #define MYRIAD_CONSTANT_MEMORY inline constexpr
 #define MYRIAD_OPTIMISATION_BARRIER(value) static_cast<void>(value)
 #define MYRIAD_MEMORY_BARRIER static_cast<void>(0)

@@ -175,6 +175,7 @@ private:
         constexpr int triggers = n_trigger<Model>;
         auto& pending = events.pending_triggers(i);
         bool acted = false;
+        [[maybe_unused]] int last = -1;  // the function whose crossing the last action was at
         for (std::int32_t actions = 0; pending.any_of(); ++actions) {
             if (actions >= detail::most_actions(args)) {
                 s.end_lane(i, status::event_accumulation);
@@ -186,7 +187,10 @@ private:
             pending.set(next, false);
             act_and_look(i, [&](auto& lane) MYRIAD_LAMBDA {
                 if constexpr (triggers_know_their_function<Model>) {
-                    return Model::after_trigger_by(events.function_of(next, i), next, lane);
+                    const int function = events.function_of(next, i);
+                    const bool crossed_again = function == last;
+                    last = function;
+                    return Model::after_trigger_by(crossed_again ? -1 : function, next, lane);
                 } else {
                     return Model::after_trigger(next, lane);
                 }

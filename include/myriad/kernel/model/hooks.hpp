@@ -184,7 +184,8 @@ constexpr bool hooks_may_stop() {
 }
 
 /// Whether a model's triggers are told which event function has made them fire, by
-/// `after_trigger_by(int function, int trigger, auto& lane)` in the place of after_trigger; -1 where an action has.
+/// `after_trigger_by(int function, int trigger, auto& lane)` in the place of after_trigger; -1 where an action has,
+/// or where the last action was at its crossing too.
 template <class Model>
 inline constexpr bool triggers_know_their_function = requires {
     requires Model::triggers_know_their_function;

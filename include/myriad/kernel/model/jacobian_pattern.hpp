@@ -99,17 +99,18 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 /// Largest system whose right-hand side is evaluated when it is compiled.
 inline constexpr int largest_traced_system = 256;
 
-/// What each slope depends on: the states, and as number n the time.
+/// What each slope depends on, the states and as number n the time, and about how many instructions they all take.
+/// What is computed from inputs alone does not count.
 template <class Model>
 struct slope_dependences {
-    using number = dependence<n_state<Model> + 1>;
-    number of_slope[n_state<Model>];
+    number_set<n_state<Model> + 1> of_slope[n_state<Model>];
+    int instructions = 0;
 };
 
 template <class Model>
 constexpr slope_dependences<Model> trace_slopes() {
     constexpr int n = n_state<Model>;
-    using S = typename slope_dependences<Model>::number;
+    using S = dependence<n + 1>;
     // Integers have no value, so that a right-hand side that reads one is no constant expression.
     inputs<Model, S> p;
     for (int i = 0; i < n_parameter<Model>; ++i) p.parameter[i] = S();
@@ -119,10 +120,16 @@ constexpr slope_dependences<Model> trace_slopes() {
     if constexpr (n_accessory < Model >> 0 && !accessories_are_outputs<Model>)
         for (int i = 0; i < n_accessory<Model>; ++i) p.accessory[i] = S();
     vec<S, n> y;
-    for (int i = 0; i < n; ++i) y[i] = S::of(i);
-    const vec<S, n> slopes = Model::template rhs<S>(S::of(n), y, p);
     slope_dependences<Model> found;
-    for (int i = 0; i < n; ++i) found.of_slope[i] = slopes[i];
+    const auto variable = [&](int i) MYRIAD_LAMBDA {
+        S itself = S::of(i);
+        itself.work = &found.instructions;
+        return itself;
+    };
+    for (int i = 0; i < n; ++i) y[i] = variable(i);
+    const vec<S, n> slopes = Model::template rhs<S>(variable(n), y, p);
+    for (int i = 0; i < n; ++i)
+        for (int w = 0; w < S::words; ++w) found.of_slope[i].bits[w] = slopes[i].on[w];
     return found;
 }
 

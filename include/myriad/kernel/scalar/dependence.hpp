@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A number that records what it depends on instead of its value: a right-hand side called with it, in a constant
-// expression, gives the entries of its Jacobian that may differ from zero.
+// expression, gives the entries of its Jacobian that may differ from zero, and about how many instructions it takes.
 #pragma once
 
 #include <concepts>
@@ -11,6 +11,21 @@
 #include "myriad/kernel/scalar/function_list.hpp"
 #include "myriad/kernel/scalar/math.hpp"
 #include "myriad/kernel/scalar/select.hpp"
+
+namespace myriad::detail {
+
+/// About how many instructions of a processor functions take; operators, and functions that are not named, take one.
+/// For Python, the same are in symbolic/operations.py.
+struct instructions {
+    static constexpr int divide = 8, sqrt = 8, reciprocal = 8, rsqrt = 8, fmod = 10, sincos = 20, sincospi = 20;
+    static constexpr int sin = 15, cos = 15, sinpi = 15, cospi = 15, asin = 15, acos = 15, atan = 15;
+    static constexpr int sinh = 15, cosh = 15, tanh = 15, cbrt = 15, hypot = 15, tan = 25, atan2 = 25;
+    static constexpr int exp = 15, exp2 = 15, expm1 = 15, log = 15, log2 = 15, log10 = 15, log1p = 15;
+    static constexpr int pow = 40, powr = 40;
+    static constexpr int abs = 1, floor = 1, round = 1, rint = 1, min = 1, max = 1;
+};
+
+}  // namespace myriad::detail
 
 namespace myriad::inline MYRIAD_TARGET {
 
@@ -66,6 +81,7 @@ struct dependence {
     static constexpr int words = (size + 63) / 64;
 
     std::uint64_t on[words]{};  // bit i % 64 of word i / 64 for quantity i
+    int* work = nullptr;        // counts the instructions of what is computed from it, if there is a counter
 
     dependence() = default;
     MYRIAD_FUNCTION dependence(double) {}
@@ -81,22 +97,37 @@ struct dependence {
         return itself;
     }
     MYRIAD_FUNCTION bool contains(int i) const { return (on[i / 64] >> (i % 64) & 1) != 0; }
-    /// What depends on both.
-    static MYRIAD_FUNCTION dependence join(const dependence& a, const dependence& b) {
+    /// What depends on both, computed from them by so many instructions.
+    static MYRIAD_FUNCTION dependence join(const dependence& a, const dependence& b, int instructions = 1) {
         dependence both;
         for (int w = 0; w < words; ++w) both.on[w] = a.on[w] | b.on[w];
+        both.work = a.work != nullptr ? a.work : b.work;
+        if (both.work != nullptr) *both.work += instructions;
         return both;
+    }
+    /// What has been computed from it by so many instructions.
+    MYRIAD_FUNCTION dependence after(int instructions) const {
+        if (work != nullptr) *work += instructions;
+        return *this;
+    }
+    /// The same with no derivative.
+    MYRIAD_FUNCTION dependence step_after(int instructions) const {
+        dependence constant;
+        constant.work = after(instructions).work;
+        return constant;
     }
 
     friend MYRIAD_FUNCTION dependence operator+(const dependence& a) { return a; }
-    friend MYRIAD_FUNCTION dependence operator-(const dependence& a) { return a; }
-#define MYRIAD_DEPENDENCE_OPERATOR(symbol)                                                                             \
-    friend MYRIAD_FUNCTION dependence operator symbol(const dependence& a, const dependence& b) { return join(a, b); } \
-    MYRIAD_FUNCTION dependence& operator symbol##=(const dependence& b) { return *this = join(*this, b); }
-    MYRIAD_DEPENDENCE_OPERATOR(+)
-    MYRIAD_DEPENDENCE_OPERATOR(-)
-    MYRIAD_DEPENDENCE_OPERATOR(*)
-    MYRIAD_DEPENDENCE_OPERATOR(/)
+    friend MYRIAD_FUNCTION dependence operator-(const dependence& a) { return a.after(1); }
+#define MYRIAD_DEPENDENCE_OPERATOR(symbol, instructions)                                          \
+    friend MYRIAD_FUNCTION dependence operator symbol(const dependence& a, const dependence& b) { \
+        return join(a, b, instructions);                                                          \
+    }                                                                                             \
+    MYRIAD_FUNCTION dependence& operator symbol##=(const dependence& b) { return *this = join(*this, b, instructions); }
+    MYRIAD_DEPENDENCE_OPERATOR(+, 1)
+    MYRIAD_DEPENDENCE_OPERATOR(-, 1)
+    MYRIAD_DEPENDENCE_OPERATOR(*, 1)
+    MYRIAD_DEPENDENCE_OPERATOR(/, detail::instructions::divide)
 #undef MYRIAD_DEPENDENCE_OPERATOR
 #define MYRIAD_DEPENDENCE_COMPARISON(symbol) \
     friend MYRIAD_FUNCTION unknown_truth<size> operator symbol(const dependence&, const dependence&) { return {}; }
@@ -139,11 +170,11 @@ struct functions<dependence<size>> {
     using D = dependence<size>;
 
 #define MYRIAD_SAME(name) \
-    static MYRIAD_FUNCTION D name(const D& x) { return x; }
+    static MYRIAD_FUNCTION D name(const D& x) { return x.after(instructions::name); }
 #define MYRIAD_CONSTANT(name) \
-    static MYRIAD_FUNCTION D name(const D&) { return {}; }
+    static MYRIAD_FUNCTION D name(const D& x) { return x.step_after(instructions::name); }
 #define MYRIAD_JOINED(name) \
-    static MYRIAD_FUNCTION D name(const D& x, const D& y) { return D::join(x, y); }
+    static MYRIAD_FUNCTION D name(const D& x, const D& y) { return D::join(x, y, instructions::name); }
     MYRIAD_SMOOTH_FUNCTIONS(MYRIAD_SAME)
     MYRIAD_STEP_FUNCTIONS(MYRIAD_CONSTANT)
     MYRIAD_FUNCTIONS_OF_TWO(MYRIAD_JOINED)
@@ -151,10 +182,14 @@ struct functions<dependence<size>> {
 #undef MYRIAD_CONSTANT
 #undef MYRIAD_JOINED
 
-    static MYRIAD_FUNCTION void sincos(const D& x, D& sine, D& cosine) { sine = cosine = x; }
-    static MYRIAD_FUNCTION void sincospi(const D& x, D& sine, D& cosine) { sine = cosine = x; }
-    static MYRIAD_FUNCTION D copysign(const D& x, const D&) { return x; }
-    static MYRIAD_FUNCTION D fma(const D& a, const D& b, const D& c) { return D::join(D::join(a, b), c); }
+    static MYRIAD_FUNCTION void sincos(const D& x, D& sine, D& cosine) {
+        sine = cosine = x.after(instructions::sincos);
+    }
+    static MYRIAD_FUNCTION void sincospi(const D& x, D& sine, D& cosine) {
+        sine = cosine = x.after(instructions::sincospi);
+    }
+    static MYRIAD_FUNCTION D copysign(const D& x, const D&) { return x.after(1); }
+    static MYRIAD_FUNCTION D fma(const D& a, const D& b, const D& c) { return D::join(D::join(a, b, 0), c); }
     static MYRIAD_FUNCTION unknown_truth<size> is_finite(const D&) { return {}; }
 };
 

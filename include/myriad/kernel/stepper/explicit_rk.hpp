@@ -8,6 +8,7 @@
 #include "myriad/kernel/core/vec.hpp"
 #include "myriad/kernel/methods/weights.hpp"
 #include "myriad/kernel/model/lane.hpp"
+#include "myriad/kernel/model/rhs_weight.hpp"
 #include "myriad/kernel/scalar/math.hpp"
 #include "myriad/kernel/scalar/select.hpp"
 
@@ -15,17 +16,18 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 
 /// `evaluate_rhs` out of line.
 template <class Model, class S>
-MYRIAD_LARGE_FUNCTION vec<S, n_state<Model>> call_rhs(const S& t, const vec<S, n_state<Model>>& y,
-                                                      const inputs<Model, S>& p) {
+MYRIAD_CALLED_FUNCTION vec<S, n_state<Model>> call_rhs(MYRIAD_CALL_ARGUMENT(S) t,
+                                                       MYRIAD_CALL_ARGUMENT(vec<S, n_state<Model>>) y,
+                                                       MYRIAD_CALL_ARGUMENT(inputs<Model, S>) p) {
     return Model::template rhs<S>(t, y, p);
 }
 
-/// Evaluates the model's right-hand side.
+/// Evaluates the model's right-hand side: of a heavy one a kernel has one copy, which all stages call.
 template <class Model, class S>
 MYRIAD_FUNCTION vec<S, n_state<Model>> evaluate_rhs(const S& t, const vec<S, n_state<Model>>& y,
                                                     const inputs<Model, S>& p) {
-    if constexpr (large_rhs<Model>) {
-        return detail::call_rhs<Model>(t, y, p);
+    if constexpr (calls_rhs<Model, S>) {
+        return detail::call_rhs<Model, S>(t, y, p);
     } else {
         return Model::template rhs<S>(t, y, p);
     }

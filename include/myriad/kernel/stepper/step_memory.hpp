@@ -71,6 +71,10 @@ inline constexpr int largest_stride_with_factors = 4800;
 /// Lorenz 96, dormand_prince_5 at 1e-6, 131 072 instances, NVIDIA H100, ms in registers and in shared memory, for 16
 /// states (1024 bytes) 0.68 and 1.6, 20 (1280) 0.87 and 1.9, 24 (1536) 2.1 and 2.5, 32 (2048) 17 and 4.6.
 inline constexpr int largest_trial_in_registers = 1600;
+/// Where a heavy right-hand side is called, all are: more threads can run then. 32 of Kuramoto's oscillators 4.25 ms,
+/// and 7.2 with shared memory.
+template <class Model, class R>
+inline constexpr bool leaves_trial_to_registers = calls_rhs<Model, R>;
 
 template <class Method, class Model, class R>
 constexpr int shared_step_bytes_of() {
@@ -86,7 +90,9 @@ constexpr int shared_step_bytes_of() {
         }
     } else if constexpr (Method::embedded_order > 0 && team_size<Model> == 1) {
         constexpr int trial = step_memory_stride<trial_step<Method, R, n_state<Model>>>;
-        if (trial > largest_trial_in_registers && trial <= largest_step_memory_stride) return trial;
+        if (!leaves_trial_to_registers<Model, R> && trial > largest_trial_in_registers &&
+            trial <= largest_step_memory_stride)
+            return trial;
     }
 #endif
     return 0;

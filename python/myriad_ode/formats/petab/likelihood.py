@@ -114,7 +114,7 @@ class PetabLikelihood(Objective):
 
     def __init__(self, experiment: Experiment, options: Mapping[str, Any]) -> None:
         super().__init__(experiment.free)
-        refuse_chosen(options, ("samples", "record", "phases", "sensitivities", "size", "start", "time"),
+        refuse_chosen(options, ("samples", "record", "phases", "free", "size", "start", "time"),
                       "a problem of PEtab")
         self._experiment, self._model = experiment, experiment.model
         self._components = components = Components(self._model)
@@ -267,7 +267,7 @@ class PetabLikelihood(Objective):
             kind, name = symbol.value
             given = self._given(name, o)
             if kind == "state":
-                known[symbol] = self._at(run[name], o, len(sets))
+                known[symbol] = self._at(run._values_of(name), o, len(sets))
             elif given is not None:
                 known[symbol] = given.values(sets)
             elif name in instances.values:
@@ -275,7 +275,7 @@ class PetabLikelihood(Objective):
             elif symbol in self._components.constants:
                 known[symbol] = np.full(shape, self._components.constants[symbol])
             else:
-                known[symbol] = run[name].reshape(len(sets), -1)[:, condition]
+                known[symbol] = run._values_of(name).reshape(len(sets), -1)[:, condition]
         return known
 
     def _at(self, samples: Array, o: Observed, count: int) -> Array:
@@ -318,7 +318,7 @@ class PetabLikelihood(Objective):
             given = self._given(name, o)
             if kind == "state":
                 for d, wrt in enumerate(self._varied):
-                    by_model[..., d] += partial * self._at(run[f"{name}_by_{wrt}"], o, sets)
+                    by_model[..., d] += partial * self._at(run._values_of(f"{name}_by_{wrt}"), o, sets)
             elif given is not None:
                 rows = np.flatnonzero(given.free >= 0)
                 found[:, rows, given.free[rows]] += partial[:, rows]

@@ -126,7 +126,7 @@ class SbmlModel(Model):
         self._reserved = {*semantics.names.values(), *semantics.quantities, *semantics.reactions}
         super().__init__(equations, (), None, None, None, None, None, None, declared, (), name, triggers=triggers,
                          tie_seed=happening.tie_seed)
-        self.line, self.hidden = users_line(), frozenset(self.accessories + self.integer_accessories)
+        self.line, self.hidden = users_line(), frozenset([*self.accessories, *self.integer_accessories])
         self.constants = constants
         self.defaults: dict[str, Any] = {**self.shared_values}
         self.defaults |= {n: e for n, e in defaults.items() if n in self.states or n in self.parameters}

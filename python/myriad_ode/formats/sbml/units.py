@@ -13,7 +13,8 @@ _short = {"mole": "mol", "litre": "l", "liter": "l", "second": "s", "metre": "m"
           "steradian": "sr", "avogadro": "N_A"}
 _prefixes = {0: "", -1: "d", -2: "c", -3: "m", -6: "µ", -9: "n", -12: "p", -15: "f", 3: "k", 6: "M", 9: "G"}
 _times = {60.0: "min", 3600.0: "h", 86400.0: "d", 604800.0: "weeks"}
-_predefined = {"substance": "mole", "time": "second"}  # of Levels 1 and 2, unless a file defines them
+# Of Levels 1 and 2, unless a file defines them; an area is a square.
+_predefined = {"substance": "mole", "time": "second", "length": "metre", "area": "metre", "volume": "litre"}
 _powers = {2.0: "²", 3.0: "³"}
 
 
@@ -61,9 +62,16 @@ class Units:
         self.libsbml, self.model = libsbml, model
 
     def of(self, element: Any) -> Any:
-        """The definition of an element's unit, or None."""
-        definition = element.getDerivedUnitDefinition() if hasattr(element, "getDerivedUnitDefinition") else None
-        return None if definition is None or element.containsUndeclaredUnits() else definition
+        """The definition of the unit of a compartment or parameter, or None. libsbml would also derive units from
+        formulas, and for that expands each call of a function: 2^n times where n functions call the next one twice."""
+        unit = element.getUnits()
+        if not unit and element.getTypeCode() == self.libsbml.SBML_COMPARTMENT:
+            size = {1.0: "length", 2.0: "area", 3.0: "volume"}.get(element.getSpatialDimensionsAsDouble())
+            if size and self.model.getLevel() > 2:
+                unit = getattr(self.model, f"get{size.capitalize()}Units")()
+            else:
+                unit = size or ""
+        return self._named(unit)
 
     def _named(self, unit: str) -> Any:
         """The definition of a unit that is given by its name."""
@@ -74,6 +82,7 @@ class Units:
         factor = made.createUnit()
         factor.initDefaults()
         factor.setKind(self.libsbml.UnitKind_forName(_predefined.get(unit, unit)))
+        factor.setExponent(2 if unit == "area" else 1)
         return made
 
     def time(self) -> str:
