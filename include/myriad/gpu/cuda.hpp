@@ -60,36 +60,19 @@ __device__ __forceinline__ unsigned largest_of_warp(lane_mask of, unsigned value
 
 // Functions of numbers. 1 / x and 1 / sqrt(x) to about 2^-20 in double precision; in single precision within an ulp
 // or two; subnormal numbers are zero.
-__device__ __forceinline__ double approximate_reciprocal(double x) {
-    double y;
-    asm("rcp.approx.ftz.f64 %0, %1;" : "=d"(y) : "d"(x));
-    return y;
-}
-__device__ __forceinline__ float approximate_reciprocal(float x) {
-    float y;
-    asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(x));
-    return y;
-}
-__device__ __forceinline__ double approximate_inverse_root(double x) {
-    double y;
-    asm("rsqrt.approx.ftz.f64 %0, %1;" : "=d"(y) : "d"(x));
-    return y;
-}
-__device__ __forceinline__ float approximate_inverse_root(float x) {
-    float y;
-    asm("rsqrt.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(x));
-    return y;
-}
-__device__ __forceinline__ float approximate_log2(float x) {
-    float y;
-    asm("lg2.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(x));
-    return y;
-}
-__device__ __forceinline__ float approximate_exp2(float x) {
-    float y;
-    asm("ex2.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(x));
-    return y;
-}
+#define MYRIAD_APPROXIMATION(real, name, instruction, kind)  \
+    __device__ __forceinline__ real name(real x) {           \
+        real y;                                              \
+        asm(instruction " %0, %1;" : "=" kind(y) : kind(x)); \
+        return y;                                            \
+    }
+MYRIAD_APPROXIMATION(double, approximate_reciprocal, "rcp.approx.ftz.f64", "d")
+MYRIAD_APPROXIMATION(float, approximate_reciprocal, "rcp.approx.ftz.f32", "f")
+MYRIAD_APPROXIMATION(double, approximate_inverse_root, "rsqrt.approx.ftz.f64", "d")
+MYRIAD_APPROXIMATION(float, approximate_inverse_root, "rsqrt.approx.ftz.f32", "f")
+MYRIAD_APPROXIMATION(float, approximate_log2, "lg2.approx.ftz.f32", "f")
+MYRIAD_APPROXIMATION(float, approximate_exp2, "ex2.approx.ftz.f32", "f")
+#undef MYRIAD_APPROXIMATION
 /// Within a few ulps; zero where b is so large that its reciprocal is subnormal.
 __device__ __forceinline__ float approximate_quotient(float a, float b) { return __fdividef(a, b); }
 /// a * b rounded, where the compiler would fuse it with an addition.

@@ -14,7 +14,6 @@
 #define MYRIAD_ON_GPU 0
 #endif
 #define MYRIAD_TARGET hip_lane
-#define MYRIAD_BACKEND_HEADER "myriad/hip/run.hpp"
 #define MYRIAD_OPTIMISATION_BARRIER(value) asm volatile("" : "+v"(value))
 
 // HIP's language, as far as clang has it from a header of HIP's.

@@ -11,7 +11,7 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 
 /// An observer follows every phase of every instance and sees each step that is committed, with its interpolant. It is
 /// made anew for each call, as `{args, s, own}` of the kernel's arguments, the state of the loop, and its own memory;
-/// it reads the state and writes nothing of it but accessories:
+/// it reads the state and writes only accessories of it; `inside` counts the evaluations that it takes:
 ///
 ///     watches          whether kernels of this model and method have it; in others there is nothing of it
 ///     changes_inputs   whether it writes accessories that the right-hand side or event functions read
