@@ -5,8 +5,8 @@
 //
 // forbid: f64 in integrate_ensemble
 // limit: integrate_ensemble<lorenz, runge_kutta_4> stack 0 spill 0 registers 48
-// limit: integrate_ensemble<bouncer, cash_karp> registers 56 stack 376 spill 8
-// limit: integrate_ensemble<bouncer, dense<tsitouras_5>> registers 80 stack 376 spill 8
+// limit: integrate_ensemble<bouncer, cash_karp> registers 56 stack 416 spill 108
+// limit: integrate_ensemble<bouncer, dense<tsitouras_5>> registers 80 stack 424 spill 128
 
 #include <myriad/cuda/kernel.cuh>
 #include <myriad/methods.hpp>

@@ -111,6 +111,12 @@ MYRIAD_FUNCTION vec<R, n_event<Model>> event_roundings(const R& t, const vec<R, 
     return detail::event_roundings<Model>(t, y, size, p, place);
 }
 
+/// Whether a slope tells where a function goes.
+template <class R>
+MYRIAD_FUNCTION bool tells_heading(R slope) {
+    return abs(slope) > R(0) && abs(slope) < infinity_of<R>;
+}
+
 /// Finds the signs that event functions show first on a path: where they and their changes exceed their rounding
 /// errors, from the time `first`, but at least its resolution, to a 64th of t and h. Zero where none does. For
 /// functions whose own slope is zero and says nothing, as that of x^3 at x = 0.

@@ -55,7 +55,11 @@ struct event_location {
         const bool again = sides.is_locating(i) && redo.target != redo.none;
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
-            const bool undecided = again && redo.crossed[j] && abs(step.g1[j]) <= near.band(j);
+            // What is zero at the end of the trial, up to rounding, may cross with the others; one that crosses later
+            // keeps its side.
+            bool undecided = again && redo.crossed[j] && abs(step.g1[j]) <= near.band(j);
+            if constexpr (!Nearness::is_plain)
+                undecided = undecided || (!again && sides.is_asked(j, side[j]) && abs(step.g1[j]) <= near.rounding(j));
             redo.crossed.set(j, crossed[j] || undecided);
             if (again) continue;
             const R change = abs(step.g1[j] - step.g[j]);
@@ -79,22 +83,25 @@ struct event_location {
         if (redo.length != R(0)) return redo_step(i);
         add_to_count(s.located, i);
         stop_locating(i);
-        const reals rounding = near.roundings_at_start(step, &sides.scratch().place);
-        reals heading{};
+        auto& scratch = sides.scratch();
+        const reals rounding = near.roundings_at_start(step, &scratch.place);
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) own.at_jump.set(j, !(side[j] * step.g[j] <= max(redo.tolerance[j], rounding[j])));
+        scratch.crosses.clear();
         if constexpr (!Nearness::is_plain) {
-            if (!again)
-                heading = side_resolver<Model, Method, S>::headings(step.slopes(), redo.crossed, step.t, step.y,
-                                                                    step.slope, step.h, step.p, &sides.scratch().place);
+            if (!again) {
+                detail::look_around(&scratch, &own, true);
+                detail::find_headings_without_slope(&scratch);
+            }
         }
+        // Others whose crossing cannot be told from this one, as where a redone step arrives; or those that lie with it
+        // between the start and the shortest trial beyond it.
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
-            // Others whose crossing cannot be told from this one, as where a redone step arrives; or those that lie
-            // with it between the start and the shortest trial beyond it.
-            const bool close = side[j] * step.g[j] <= max(redo.tolerance[j], rounding[j]);
-            const bool along = redo.crossed[j] && close && side[j] * heading[j] < R(0);
+            const bool along = scratch.crosses[j] && side[j] * scratch.heading[j] < R(0);
             const bool happens = redo.target == j || (again ? crossed[j] : along);
             events.put(j, i, happens, step.g[j]);
-            own.at_jump.set(j, happens && !close);
+            own.at_jump.set(j, happens && own.at_jump[j] && !scratch.crosses[j]);
         }
         stepping<Model, Method, S>{args, s}.resume(i, redo.resume);
     }

@@ -60,12 +60,87 @@ struct event_scratch {
     event_place<Model, R> place;
     step_part<R> part;
     scanned_part<R, n_event<Model>> scanned;
-    vec<R, n_event<Model>> side;            // that the functions are on
-    vec<R, n_event<Model>> slope, heading;  // at the end of a redone step,
-    vec<R, n_event<Model>> middle;          // and values in the middle of it
+    vec<R, n_event<Model>> side;  // that the functions are on
+    // of the functions at one end of the step, with their values in the middle of it
+    vec<R, n_event<Model>> tolerance, slope, heading, middle;
+    mask_set<bool, n_event<Model>> crosses;
+    bool flat;  // one of them has no slope that tells where it goes
+    std::int32_t function;
 };
 template <class Model, class R>
 struct event_scratch<Model, R, false> {};
+
+/// Finds the slopes of the event functions along the solution at the end of the step, or at its start, where they have
+/// rounding errors `place.rounding`; their headings there, +1 or -1, in the direction of the step; and which of those
+/// that crossed in the trial before cross at that very point, as far as can be told: those within the tolerance given,
+/// or on their other side as soon as rounding lets them move. The sign then tells, not the size at the point: it is the
+/// same for x and x^3.
+template <class Model, class R>
+MYRIAD_RARE_FUNCTION void look_around(event_scratch<Model, R>* at, const event_memory<Model, R>* own, bool at_start) {
+    const auto& step = at->step;
+    auto& place = at->place;
+    place.p = step.p;
+    place.h = step.h, place.first = R(0);
+    place.bend = {};
+    if (at_start) {
+        place.t = step.t, place.y = step.y, place.slope = step.slope;
+        place.here = step.g, at->tolerance = own->redo.tolerance;
+    } else {
+        place.t = step.t1, place.y = step.y1, place.slope = step.slope1;
+        place.here = step.g1, at->tolerance = own->near.bands, place.rounding = own->near.roundings;
+    }
+    at->slope = detail::event_slopes<Model>(place.t, place.y, place.slope, place.p);
+    at->crosses.clear();
+    at->flat = false;
+    MYRIAD_ROLLED
+    for (at->function = 0; at->function < n_event<Model>; ++at->function) {
+        MYRIAD_OPTIMISATION_BARRIER(at);  // else what it points to occupies registers throughout
+        const int j = at->function;
+        at->heading[j] = at->slope[j] != R(0) ? copysign(R(1), at->slope[j] * place.h) : R(0);
+        if (!own->redo.crossed[j]) continue;
+        at->flat = at->flat || !detail::tells_heading(at->slope[j]);
+        place.length = place.rounding[j] * reciprocal(abs(at->slope[j]));  // in which it moves by its rounding error
+        MYRIAD_OPTIMISATION_BARRIER(at);
+        R g = place.here[j], bound = max(at->tolerance[j], place.rounding[j]);
+        const bool is_short = place.length * R(64) <= abs(place.t) + abs(place.h) && place.length > R(0);
+        if (!(at->tolerance[j] > place.rounding[j]) && is_short) {
+            const R length = copysign(place.length, place.h);
+            MYRIAD_UNROLL
+            for (int c = 0; c < n_state<Model>; ++c) place.there[c] = fma(length, place.slope[c], place.y[c]);
+            place.sign = detail::evaluate_events<Model>(place.t + length, place.there, place.p);
+            MYRIAD_OPTIMISATION_BARRIER(at);
+            g = place.sign[at->function], bound = R(0);
+        }
+        at->crosses.set(at->function, at->side[at->function] * g <= bound);
+    }
+}
+/// Finds the headings of functions that `look_around` found without a slope that tells, by the values ahead.
+template <class Model, class R>
+MYRIAD_FUNCTION void find_headings_without_slope(event_scratch<Model, R>* at) {
+    if (!MYRIAD_UNLIKELY(at->flat)) return;
+    detail::find_first_signs(&at->place);
+    MYRIAD_UNROLL
+    for (int j = 0; j < n_event<Model>; ++j)
+        if (!detail::tells_heading(at->slope[j])) at->heading[j] = at->place.sign[j];
+}
+
+/// Finds the event functions after the time `reach` beyond the end of the step, on a straight path, as `heading`, and
+/// begins a path there for the signs that they show first beyond twice that time.
+template <class Model, class R>
+MYRIAD_RARE_FUNCTION void begin_beyond(event_scratch<Model, R>* at, R reach) {
+    const auto& step = at->step;
+    auto& place = at->place;
+    place.p = step.p;
+    place.t = step.t1, place.h = step.h, place.first = R(2) * reach;
+    place.y = step.y1, place.slope = step.slope1;
+    const R per_time = reciprocal(step.h);
+    MYRIAD_UNROLL
+    for (int c = 0; c < n_state<Model>; ++c) {
+        place.bend[c] = (step.slope1[c] - step.slope[c]) * per_time;
+        place.there[c] = fma(copysign(reach, step.h), step.slope1[c], step.y1[c]);
+    }
+    at->heading = detail::evaluate_events<Model>(step.t1 + copysign(reach, step.h), place.there, place.p);
+}
 
 /// What event location keeps and works on in a pack. One object, since each would take registers for its address.
 template <class Model, class R, int lanes>

@@ -44,7 +44,10 @@ struct general_locator {
             const bool located = seeking && (own.redo.target == j || own.redo.crossed[j]);
             near.bands[j] = max(tolerance, near.roundings[j]);
             near.allowances[j] = located ? tolerance : start;
-            crossed.set(j, sides.crosses(j, side[j], step.g1[j], near.past(j)) && !sides.is_at_jump(j, i, step.h));
+            const bool signs_tell =
+                seeking && own.redo.target == j && !own.redo.narrow && own.redo.goes_by_signs(j, near.roundings[j]);
+            const R past = signs_tell ? near.allowances[j] : near.past(j);
+            crossed.set(j, sides.crosses(j, side[j], step.g1[j], past) && !sides.is_at_jump(j, i, step.h));
         }
         auto& part = sides.scratch().part;
         part = step_part<R>{};
@@ -130,6 +133,7 @@ private:
             reached.all_left = reached.all_left && sides.e.left.get(j, i);
             if (redo.target == j) {
                 reached.gap = side[j] * step.g1[j];
+                if (redo.goes_by_signs(j, near.rounding(j))) continue;
                 reached.band = near.band(j);
                 reached.close = max(R(arrival_part) * redo.tolerance[j], R(0.125) * near.rounding(j));
             } else {
@@ -151,11 +155,12 @@ private:
         const bool narrow = redo.is_between(step.h);
         auto& found = sides.scratch();
         reals &slope = found.slope, &heading = found.heading, &middle = found.middle;
+        flags& here = found.crosses;
         slope = heading = middle = step.g1;
+        here.clear();
         if (!reached.is_plain()) {
-            slope = step.slopes1();
-            heading = resolver::headings(slope, redo.crossed, step.t1, step.y1, step.slope1, step.h, step.p,
-                                         &sides.scratch().place);
+            detail::look_around(&found, &own, false);
+            detail::find_headings_without_slope(&found);
             if (!reached.all_left) middle = step.values_at(R(0.5));
         }
         R approach = R(0);
@@ -177,8 +182,7 @@ private:
                 further = abs(reached.gap) <= reached.band && redo.improve(step.h, guess, reached.gap > R(0));
                 MYRIAD_UNROLL
                 for (int j = 0; j < m; ++j)  // of those that cross in the shortest trial known to end beyond
-                    if (redo.target != j && !(reached.gap > R(0)) && abs(step.g1[j]) > near.band(j))
-                        redo.crossed.set(j, false);
+                    if (redo.target != j && !(reached.gap > R(0)) && !here[j]) redo.crossed.set(j, false);
             }
             if (further) {
                 location{sides}.redo_step(i);
@@ -192,7 +196,7 @@ private:
             for (int j = 0; j < m; ++j) {
                 if (redo.target == j || !redo.crossed[j] || !(side[j] * heading[j] < R(0))) continue;
                 const bool soon = slope[j] == R(0) || abs(step.g1[j]) <= R(2) * abs(slope[j] * ahead);
-                undecided = undecided || (soon && abs(step.g1[j]) > near.band(j));
+                undecided = undecided || (soon && !here[j]);
             }
             if (undecided && redo.improve(step.h, step.h + ahead, true)) {
                 location{sides}.redo_step(i);
@@ -203,12 +207,12 @@ private:
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
             const R band = near.band(j);
-            const bool heads = abs(step.g1[j]) <= band && side[j] * heading[j] < R(0);
-            const bool jumps = narrow && side[j] * step.g1[j] > band;
+            const bool heads = here[j] && side[j] * heading[j] < R(0);
+            const bool jumps = narrow && side[j] * step.g1[j] > band && !here[j];
             const bool happens = redo.target == j || (redo.crossed[j] && (heads || jumps));
             events.put(j, i, happens, step.g1[j]);
             if (!reached.all_left && !timeless && !own.on_jump[j] && abs(middle[j]) > band) e.left.set(j, i, true);
-            own.at_jump.set(j, happens && abs(step.g1[j]) > band);
+            own.at_jump.set(j, happens && abs(step.g1[j]) > band && !(reached.others && here[j]));
         }
         location{sides}.end(i);
         return trial_outcome::stands;
@@ -219,25 +223,15 @@ private:
     /// rest at zero or turns back there, as at a double root, does not, nor does one that only approaches zero.
     MYRIAD_FUNCTION void end_on_root(int i, const ends_of_step& step, const reals& side, fired& events) const {
         auto& own = sides.memory_of(i);
-        const R rounding = end_rounding(i, step), reach = copysign(rounding, step.h);
-        auto& path = sides.scratch().place;
-        path.p = step.p;
-        path.t = step.t1, path.h = step.h, path.first = R(2) * rounding;
-        path.y = step.y1, path.slope = step.slope1;
-        typename ends_of_step::state there;
-        MYRIAD_UNROLL
-        for (int c = 0; c < n_state<Model>; ++c) {
-            path.bend[c] = (step.slope1[c] - step.slope[c]) / step.h;
-            there[c] = fma(reach, step.slope1[c], step.y1[c]);
-        }
-        const reals beyond = detail::evaluate_events<Model>(step.t1 + reach, there, step.p);
-        detail::find_first_signs(&path);
+        auto& found = sides.scratch();
+        detail::begin_beyond(&found, end_rounding(i, step));
+        detail::find_first_signs(&found.place);
         own.at_jump.clear();
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
-            const bool reaches = side[j] * step.g1[j] <= R(0) || side[j] * beyond[j] <= R(0);
+            const bool reaches = side[j] * step.g1[j] <= R(0) || side[j] * found.heading[j] <= R(0);
             const bool close = abs(step.g1[j]) <= sides.args.event[j].end_tolerance;
-            const bool happens = reaches && close && sides.is_asked(j, side[j]) && side[j] * path.sign[j] < R(0);
+            const bool happens = reaches && close && sides.is_asked(j, side[j]) && side[j] * found.place.sign[j] < R(0);
             events.put(j, i, happens, step.g1[j]);
             own.at_jump.set(j, happens && abs(step.g1[j]) > own.near.band(j));
         }

@@ -68,6 +68,11 @@ struct redone_step {
         const bool bisected = narrow || tries >= most_guesses;
         return (bisected ? abs(beyond - before) : R(0)) + epsilon_of<R> * abs(beyond);
     }
+    /// Whether signs alone decide where event j is, with this rounding error: guesses have not converged, as with a
+    /// flat function, whose small values do not show that its event is near, and no tolerance was given.
+    MYRIAD_FUNCTION bool goes_by_signs(int j, R rounding) const {
+        return tries >= most_guesses && tolerance[j] <= rounding;
+    }
     /// Whether the event, up to rounding, is where a redone step of length h ended before it.
     MYRIAD_FUNCTION bool is_between(R h) const { return are_one(h, beyond); }
     /// A redone step of length h ended before the event.

@@ -157,6 +157,19 @@ struct side_resolver {
         const reals rounding = sides.roundings_if_needed(i, g, in_question);
         const R step = abs(sides.memory_of(i).redo.beyond);
         const R location_error = R(8) * (sides.rounding_of_time(i) + epsilon_of<R> * step);
+        flags moved_near;
+        moved_near.clear();
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) {
+            const bool others = !events.which.get(j, i) && !on_jump[j] && g[j] != get_lane(events.value[j], i);
+            moved_near.set(j, others && detail::tells_heading(slope[j]) && abs(g[j]) <= abs(slope[j]) * location_error);
+        }
+        if (MYRIAD_UNLIKELY(moved_near.any_of())) {
+            const R error = time_error(i, events, slope_before, location_error);
+            MYRIAD_UNROLL
+            for (int j = 0; j < m; ++j)
+                if (moved_near[j] && abs(g[j]) <= abs(slope[j]) * error) sides.put_side(j, i, heading[j]);
+        }
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
             const bool fires = events.which.get(j, i), waits = !fires && on_jump[j];
@@ -194,7 +207,7 @@ struct side_resolver {
     }
 
     /// The sides to which the event functions go from (t, y), in the direction of h: +1, -1, or 0 for those that rest.
-    /// Their slopes tell; of functions in `wanted` without one, the values ahead.
+    /// Their slopes tell; of functions in `wanted` without one, or with one that is not finite, the values ahead.
     static MYRIAD_FUNCTION reals headings(const reals& slope, const flags& wanted, const R& t, const state& y,
                                           const state& along, const R& h, const inputs<Model, R>& p,
                                           event_place<Model, R>* path) {
@@ -203,7 +216,7 @@ struct side_resolver {
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
             heading[j] = sign_of(slope[j]) * sign_of(h);
-            flat = flat || (wanted[j] && slope[j] == R(0));
+            flat = flat || (wanted[j] && !detail::tells_heading(slope[j]));
         }
         if (!MYRIAD_UNLIKELY(flat)) return heading;
         path->p = p;
@@ -212,7 +225,7 @@ struct side_resolver {
         detail::find_first_signs(path);
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j)
-            if (slope[j] == R(0)) heading[j] = path->sign[j];
+            if (!detail::tells_heading(slope[j])) heading[j] = path->sign[j];
         return heading;
     }
 
@@ -247,6 +260,23 @@ private:
             heading[j] = g[j] * side > R(0) ? side : -side;
         }
         return heading;
+    }
+
+    /// By how much the time of the events that fired in lane i may be wrong, but no more than `most`: what their
+    /// functions had to zero, and their rounding errors or tolerances. What an action moves onto a surface is beside it
+    /// by so much.
+    MYRIAD_FUNCTION R time_error(int i, const fired& events, const reals& slope, R most) const {
+        const auto& near = sides.memory_of(i).near;
+        R error = R(0);
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j) {
+            if (!events.which.get(j, i)) continue;
+            const R tolerance = sides.args.event[j].tolerance;
+            const R value =
+                R(2) * abs(get_lane(events.value[j], i)) + (tolerance > R(0) ? tolerance : near.rounding(j));
+            error = max(error, detail::tells_heading(slope[j]) ? value * reciprocal(abs(slope[j])) : most);
+        }
+        return min(error, most);
     }
 
     /// The number of roundings of t to the point ahead of a jump.

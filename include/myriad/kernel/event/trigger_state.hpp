@@ -75,7 +75,7 @@ struct trigger_conditions {
         bool any = false;
         MYRIAD_UNROLL
         for (int j = 0; j < m; ++j) {
-            if (!unknown(i)[j] || !(slope[j] > R(0) || slope[j] < R(0))) continue;
+            if (!unknown(i)[j] || !detail::tells_heading(slope[j])) continue;
             sides.put_side(j, i, sign_of(slope[j]) * sense);
             any = true;
         }
