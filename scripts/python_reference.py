@@ -22,12 +22,13 @@ PACKAGE = "python/myriad_ode"
 # The pages, and the files whose names they have. A public name of another file is an error.
 PAGES = {
     "python_solve": ("Python: solve and runs", "What a call takes and returns.",
-                     ["solving.solve", "solving.options", "results.run", "base.statuses", "sweeps.sweep",
-                      "symbolic.axes", "results.gpu_results", "base.errors", "models.methods"]),
+                     ["solving.solve", "solving.options", "results.run", "results.report", "base.statuses",
+                      "sweeps.sweep", "symbolic.axes", "results.gpu_results", "base.errors", "models.methods"]),
     "python_model": ("Python: models", "Equations, events and hooks, and the symbols and functions in them.",
-                     ["codegen.model", "models.event", "models.trigger", "symbolic.symbols", "symbolic.expression",
-                      "symbolic.interpolate", "symbolic.table", "models.tangents", "results.exponents",
-                      "models.cpp_model", "formats.sbml.model", "models.units", "formats.xpp.model"]),
+                     ["codegen.model", "models.event", "models.trigger", "symbolic.symbols", "symbolic.functions",
+                      "symbolic.expression", "symbolic.interpolate", "symbolic.table", "models.tangents",
+                      "results.exponents", "models.cpp_model", "formats.sbml.model", "models.units",
+                      "formats.xpp.model"]),
     "python_fit": ("Python: sensitivities and fits", "Derivatives of results, and what is fitted to data by them.",
                    ["models.sensitivities", "results.sensitivities", "gradients.batched", "inference.least_squares",
                     "inference.fitting", "inference.profile", "formats.petab.problem", "inference.designs"]),
@@ -37,7 +38,7 @@ PAGES = {
                      ["base.plots", "results.run_plots", "kernels.cache"]),
 }
 # Classes that public functions return, whose members users call though they do not make them.
-RETURNED = {"results.run": ["Report"], "sweeps.sweep": ["Sweep"], "symbolic.axes": ["Axis"],
+RETURNED = {"results.report": ["Report"], "sweeps.sweep": ["Sweep"], "symbolic.axes": ["Axis"],
             "symbolic.table": ["Table"], "studies.reduce": ["Reduction"], "models.tangents": ["WithTangents"],
             "results.run_plots": ["Plots"], "inference.profile": ["Profile"],
             "inference.designs": ["Design", "Indices"], "results.gpu_results": ["DeviceArray", "DeviceResults"],

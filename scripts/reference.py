@@ -55,7 +55,7 @@ PAGES = {
                       ["kernel/model/coupled_units.hpp", "kernel/model/coupling.hpp", "kernel/model/unit_views.hpp",
                        "host/ensemble/couplings.hpp"]),
     "study": ("Studies", "`<myriad/study.hpp>`, target `myriad::study`. Axes, what is kept, the run, results on disk.",
-              ["study/study.hpp", "study/model_study.hpp", "study/axes.hpp", "study/reduction.hpp", "study/",
+              ["study/study.hpp", "study/model_study.hpp", "study/plan/axes.hpp", "study/plan/reduction.hpp", "study/",
                "kernel/study/"]),
     "mpi": ("Studies over MPI", "`<myriad/mpi.hpp>`, target `myriad::mpi`.", ["mpi.hpp"]),
     "program": ("The command-line program", "`<myriad/program.hpp>`, target `myriad::program`: models for it.",

@@ -96,6 +96,7 @@ started=$SECONDS
 passed=0
 failed=0
 summary=()
+times_of_steps=()
 
 # The tests of preset ci that belong to step programs, by their labels.
 programs='^(benchmarks|compile_time|derivatives|docs|examples|headers|install|must_not_compile|validation)$'
@@ -164,6 +165,29 @@ run_tests() {
         awk '/Test +#[0-9]+: .*(Passed|Skipped) +[0-9.]+ sec/ || /tests passed,/ { shown = 0 }
              /Test +#[0-9]+: .*\*\*\*/ { shown = 1 }
              shown && !/^ +Start +[0-9]+:/ && ++lines <= 400' "$log"
+    fi
+}
+
+# Seconds that the processes which this one has waited for computed, all together: sets `computed`. `times` has to be
+# called by this process itself.
+read_computed() {
+    times >build/times.txt
+    computed=$(awk 'NR == 2 { gsub(",", "."); split($0, t, /[ms ]+/); printf "%d", 60 * (t[1] + t[3]) + t[2] + t[4] }' \
+        build/times.txt)
+}
+
+# hold_budget STEP COMPUTED CLOCK: adds a line to the table of times. A step that computes for longer than its budget is
+# a failure. The clock is not asked, since it depends on what else the machine does.
+hold_budget() {
+    local name=$1 budget
+    if [[ $1 == python && $other_packages == yes ]]; then name=python_full; fi
+    budget=$(awk -v name="$name" '$1 == name { print $2 }' scripts/budgets.txt)
+    if [[ $thorough == ON ]]; then budget=; fi
+    times_of_steps+=("$(printf '%-9s %9d %9d %9s' "$1" "$2" "$3" "${budget:--}")")
+    if [[ -n $budget ]] && (($2 > budget)); then
+        failed=$((failed + 1))
+        summary+=("$1: FAILED, it computed for $2 s, and its budget in scripts/budgets.txt is $budget s")
+        say "${summary[-1]}"
     fi
 }
 
@@ -236,11 +260,18 @@ run_step() {
 }
 
 require_packages "${packages[@]}"
+mkdir -p build
 for step in "${steps[@]}"; do
+    read_computed
+    computed_before=$computed begun=$SECONDS
     run_step "$step"
+    read_computed
+    hold_budget "$step" $((computed - computed_before)) $((SECONDS - begun))
 done
 
 say "Summary, after $(duration $((SECONDS - started)))"
 printf '   %s\n' "${summary[@]}"
+printf '   seconds:  processor     clock    budget\n'
+printf '   %s\n' "${times_of_steps[@]}"
 printf '%d passed, %d failed\n' "$passed" "$failed"
 ((failed == 0))

@@ -13,10 +13,10 @@
 #include "myriad/host/model/numbering.hpp"
 #include "myriad/kernel/core/abi.hpp"
 #include "myriad/methods.hpp"
-#include "myriad/study/chunk_solver.hpp"
-#include "myriad/study/component_names.hpp"
-#include "myriad/study/layout.hpp"
 #include "myriad/study/model_study.hpp"
+#include "myriad/study/plan/component_names.hpp"
+#include "myriad/study/plan/layout.hpp"
+#include "myriad/study/run/chunk_solver.hpp"
 
 namespace myriad::programs::inline MYRIAD_ABI {
 

@@ -6,9 +6,9 @@
 #include "myriad/host/core/host_only.hpp"
 
 #include "myriad/myriad.hpp"
-#include "myriad/study/axes.hpp"
-#include "myriad/study/export.hpp"
+#include "myriad/study/export/export.hpp"
 #include "myriad/study/model_study.hpp"
-#include "myriad/study/reduction.hpp"
-#include "myriad/study/store.hpp"
+#include "myriad/study/plan/axes.hpp"
+#include "myriad/study/plan/reduction.hpp"
+#include "myriad/study/store/store.hpp"
 #include "myriad/study/study.hpp"

@@ -27,7 +27,8 @@ from .models.tangents import *  # noqa: F403
 from .models.trigger import *  # noqa: F403
 from .models.units import *  # noqa: F403
 from .results.exponents import *  # noqa: F403
-from .results.run import Interrupted as Interrupted, Run as Run
+from .results.report import Interrupted as Interrupted
+from .results.run import Run as Run
 from .results.sensitivities import *  # noqa: F403
 from .solving.options import (EventChoice as EventChoice, Options as Options, RecordChoice as RecordChoice,
                               SampleChoice as SampleChoice)
@@ -39,6 +40,7 @@ from .sweeps.sweep import *  # noqa: F403
 from .symbolic import numpy_functions as numpy_functions
 from .symbolic.axes import *  # noqa: F403
 from .symbolic.expression import *  # noqa: F403
+from .symbolic.functions import *  # noqa: F403
 from .symbolic.interpolate import *  # noqa: F403
 from .symbolic.symbols import *  # noqa: F403
 from .symbolic.table import *  # noqa: F403
@@ -52,8 +54,8 @@ _public = ["CppModel", "Damage", "Error", "EventChoice", "Interrupted", "Options
            *(name for part in ("codegen.model", "gradients.batched", "inference.fitting", "inference.least_squares",
                                "models.event", "models.sensitivities", "models.tangents", "models.trigger",
                                "models.units", "results.exponents", "results.sensitivities", "sweeps.sweep",
-                               "symbolic.axes", "symbolic.expression", "symbolic.interpolate", "symbolic.symbols",
-                               "symbolic.table")
+                               "symbolic.axes", "symbolic.expression", "symbolic.functions", "symbolic.interpolate",
+                               "symbolic.symbols", "symbolic.table")
              for name in _sys.modules[f"{__name__}.{part}"].__all__)]
 # What `from myriad_ode import *` brings: nothing that has the name of a function of Python's, such as abs.
 __all__ = [name for name in _public if not hasattr(_builtins, name)]

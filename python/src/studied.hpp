@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "myriad/study/studied_model.hpp"
+#include "myriad/study/run/studied_model.hpp"
 #include "run.hpp"
 
 namespace myriad::python {

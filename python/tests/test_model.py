@@ -14,7 +14,7 @@ import pytest
 import example_models
 import myriad_ode as my
 from myriad_ode.symbolic.evaluate import evaluate
-from myriad_ode.symbolic.expression import walk
+from myriad_ode.symbolic.node import walk
 
 x, v = my.states("x v")
 k, B = my.parameter("k"), my.shared("B")

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import myriad_ode as my
-from myriad_ode.symbolic.expression import vector
+from myriad_ode.symbolic.vectors import vector
 
 x, v, k = my.state("x"), my.state("v"), my.parameter("k")
 

@@ -8,25 +8,21 @@
 #include <charconv>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
-#include <iterator>
-#include <mutex>
-#include <optional>
 #include <span>
 #include <system_error>
 #include <utility>
 #include <vector>
 
 #include <fcntl.h>
-#include <pthread.h>
-#include <sys/file.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
 
+#include "compile/file_locks.hpp"
+#include "compile/own_files.hpp"
 #include "myriad/host/core/error.hpp"
-#include "myriad/study/crc32c.hpp"
+#include "myriad/study/store/crc32c.hpp"
 
 namespace myriad::compiling {
 
@@ -47,28 +43,6 @@ std::uintmax_t size_limit() {
     return limit;
 }
 
-bool is_own(const struct stat& is) { return is.st_uid == ::geteuid() || is.st_uid == 0; }
-
-/// Why something is not trusted; empty if it is.
-std::string objection_to(const struct stat& is) {
-    if (!is_own(is)) return message("it belongs to another user, of number ", is.st_uid);
-    if ((is.st_mode & (S_IWGRP | S_IWOTH)) == 0) return "";
-    char mode[8] = {};
-    std::to_chars(mode, mode + sizeof mode, is.st_mode & 0777, 8);
-    return message("others may write to it (mode ", mode, ")");
-}
-
-/// Makes a folder and those that it is in, for this user alone whatever the umask is.
-bool make_folders(const fs::path& path) {
-    if (::mkdir(path.c_str(), 0700) == 0 || errno == EEXIST) return true;
-    const fs::path parent = path.parent_path();
-    if (errno != ENOENT || parent.empty() || parent == path || !make_folders(parent)) return false;
-    return ::mkdir(path.c_str(), 0700) == 0 || errno == EEXIST;
-}
-
-/// The name by which an open file, and no other, is read and written.
-std::string path_of(int file) { return "/proc/self/fd/" + std::to_string(file); }
-
 /// A name of the same file that no library of this process was loaded by: the system's loader takes a name that it
 /// knows for the library that it has loaded by it, and numbers of files come again. Slashes and dots, which lead
 /// nowhere, spell a number, and whose it is, as another library of the process may have this code, too.
@@ -79,22 +53,6 @@ std::string new_path_of(int file) {
         for (int bit = 0; bit < 64; ++bit) path += (number >> bit & 1) != 0 ? "./" : "/";
     return path + std::to_string(file);
 }
-
-/// Closes a file at its end, unless that is released.
-class open_file {
-public:
-    explicit open_file(int file) : file_(file) {}
-    open_file(const open_file&) = delete;
-    open_file& operator=(const open_file&) = delete;
-    ~open_file() {
-        if (file_ >= 0) ::close(file_);
-    }
-    int get() const { return file_; }
-    int release() { return std::exchange(file_, -1); }
-
-private:
-    int file_;
-};
 
 /// A copy of a file in memory, from which code may be run where the file system of the file forbids that; -1 if there
 /// can be none.
@@ -136,67 +94,6 @@ bool is_whole(const std::string& whole, std::string_view made_from) {
     return size == made_from.size() && summed.substr(summed.size() - sizeof size - size, made_from.size()) == made_from;
 }
 
-/// Opens a file of this user; -1 if it is not that. A pipe does not wait for its other end.
-int open_own(int folder, const std::string& name) {
-    const int file = ::openat(folder, name.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
-    struct stat is;
-    if (file < 0 || (::fstat(file, &is) == 0 && S_ISREG(is.st_mode) && objection_to(is).empty())) return file;
-    ::close(file);
-    return -1;
-}
-
-/// The locks of this process. A child that it forks has them open, too, and would hold them until it ends.
-class held_locks {
-public:
-    static void add(int file) {
-        const std::lock_guard guard(mine().mutex_);
-        mine().files_.push_back(file);
-    }
-    /// Unlocks and closes one; one that this process only has from its parent is closed already.
-    static void give_back(int file) {
-        const std::lock_guard guard(mine().mutex_);
-        if (std::erase(mine().files_, file) == 0) return;
-        ::flock(file, LOCK_UN);
-        ::close(file);
-    }
-
-private:
-    held_locks() {
-        ::pthread_atfork([] { mine().mutex_.lock(); }, [] { mine().mutex_.unlock(); },
-                         [] {
-                             for (const int file : mine().files_) ::close(file);
-                             mine().files_.clear();
-                             mine().mutex_.unlock();
-                         });
-    }
-    static held_locks& mine() {
-        static auto* const all = new held_locks;  // for the life of the process
-        return *all;
-    }
-
-    std::mutex mutex_;
-    std::vector<int> files_;
-};
-
-/// Takes the lock of a key; -1 if another process has it and `wait` is false, or if there are no locks here. A file is
-/// removed by the process that has its lock, so that it must be the one which has the name then.
-int take_lock(int folder, const std::string& name, bool wait, const signal_check& check = {}) {
-    for (;;) {
-        const int file = ::openat(folder, name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
-        if (file < 0) return -1;
-        open_file lock(file);
-        int locked = -1;
-        while ((locked = ::flock(file, LOCK_EX | (wait ? 0 : LOCK_NB))) < 0 && errno == EINTR)
-            if (check) check();
-        struct stat mine, named;
-        if (locked == 0 && ::fstat(file, &mine) == 0 &&
-            ::fstatat(folder, name.c_str(), &named, AT_SYMLINK_NOFOLLOW) == 0 && mine.st_ino == named.st_ino) {
-            held_locks::add(file);
-            return lock.release();
-        }
-        if (locked < 0) return -1;
-    }
-}
 bool is_loaded(int file, const compiled_cache::loader& load) {
     try {
         load_file(file, load);
@@ -212,55 +109,6 @@ bool is_compiled(const fs::path& path) {
     return kind == ".so" || kind == ".pch" || kind == ".gch";
 }
 
-void give_lock_back(int folder, const std::string& name, int file) {
-    if (file < 0) return;
-    ::unlinkat(folder, name.c_str(), 0);
-    held_locks::give_back(file);
-}
-
-}  // namespace
-
-// ---------------------------------------------------------------------------------------------------------------------
-// The folder
-// ---------------------------------------------------------------------------------------------------------------------
-
-namespace {
-
-/// A folder that lasts as long as the process that made it.
-struct folder_of_process {
-    fs::path path;
-    pid_t owner = ::getpid();
-
-    folder_of_process() {
-        std::error_code unknown;
-        for (const fs::path& where : {fs::temp_directory_path(unknown), fs::path("/tmp"), fs::path("/var/tmp")}) {
-            if (!where.is_absolute()) continue;
-            std::string name = (where / "myriad.XXXXXX").string();
-            if (::mkdtemp(name.data()) == nullptr) continue;
-            path = name;
-            return;
-        }
-        host::refuse({"neither the cache nor a temporary folder can be written", host::cure,
-                      "set MYRIAD_CACHE_DIR to a folder that can"});
-    }
-    folder_of_process(const folder_of_process&) = delete;
-    folder_of_process& operator=(const folder_of_process&) = delete;
-    ~folder_of_process() {
-        std::error_code ignored;
-        if (::getpid() == owner) fs::remove_all(path, ignored);
-    }
-
-    /// This process'. A child has one of its own, since its parent's may be gone.
-    static fs::path own() {
-        static std::mutex mutex;
-        static std::optional<folder_of_process> made;
-        const std::lock_guard guard(mutex);
-        std::error_code unknown;
-        if (!made || made->owner != ::getpid() || !fs::is_directory(made->path, unknown)) made.emplace();
-        return made->path;
-    }
-};
-
 /// Whether a disk may have no room for what a compiler writes, which is removed again.
 bool is_full(const fs::path& folder) {
     std::error_code unknown;
@@ -269,6 +117,10 @@ bool is_full(const fs::path& folder) {
 }
 
 }  // namespace
+
+// ---------------------------------------------------------------------------------------------------------------------
+// The folder
+// ---------------------------------------------------------------------------------------------------------------------
 
 compiled_cache::compiled_cache(signal_check check) : check_(std::move(check)), limit_(size_limit()) {
     const fs::path chosen = user_folder();
@@ -298,7 +150,7 @@ fs::path compiled_cache::user_folder() {
 }
 
 void compiled_cache::use_folder_of_process() {
-    made_in_ = folder_of_process::own();
+    made_in_ = folder_of_process();
     if (made_in_folder_ != folder_) ::close(made_in_folder_);
     made_in_folder_ = ::open(made_in_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
 }
@@ -521,36 +373,6 @@ int compiled_cache::clear() const {
         removed += fs::remove(at->path(), failed) && at->path().extension() == ".so" ? 1 : 0;
     }
     return removed;
-}
-
-// ---------------------------------------------------------------------------------------------------------------------
-// Texts
-// ---------------------------------------------------------------------------------------------------------------------
-
-std::string text_hash(std::string_view text) {
-    std::uint64_t hash = 0xcbf29ce484222325;
-    for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
-    std::string digits(16, '0');
-    for (std::size_t i = 16; i-- > 0; hash >>= 4) digits[i] = "0123456789abcdef"[hash & 15];
-    return digits;
-}
-
-void write_file(const fs::path& path, const std::string& text, std::ios::openmode mode) {
-    errno = 0;
-    std::ofstream file(path, std::ios::binary | mode);
-    file << text;
-    file.close();
-    require(file.good(), path.string(), " cannot be written (",
-            errno != 0 ? std::generic_category().message(errno) : "the system does not say why", ")");
-}
-std::string read_file(const fs::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
-
-std::string variable(const char* name) {
-    const char* const value = std::getenv(name);
-    return value != nullptr ? value : "";
 }
 
 }  // namespace myriad::compiling

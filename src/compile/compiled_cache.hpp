@@ -7,11 +7,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <ios>
 #include <string>
 #include <string_view>
 
 #include "compile/child_process.hpp"
+#include "compile/text_files.hpp"
 
 namespace myriad::compiling {
 
@@ -74,16 +74,5 @@ private:
     std::string objection_;
     bool is_distrusted_ = false;
 };
-
-/// FNV-1a of a text, as 16 hexadecimal digits.
-std::string text_hash(std::string_view text);
-
-/// Writes a file, or with `std::ios::app` what is behind its text. Throws `error` if that fails.
-void write_file(const std::filesystem::path& path, const std::string& text, std::ios::openmode mode = std::ios::trunc);
-/// The text of a file; empty if it cannot be read.
-std::string read_file(const std::filesystem::path& path);
-
-/// A variable of the environment; empty if it is not set.
-std::string variable(const char* name);
 
 }  // namespace myriad::compiling

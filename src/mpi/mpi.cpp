@@ -20,7 +20,7 @@
 #include <sched.h>
 
 #include "myriad/host/core/error.hpp"
-#include "myriad/study/writer.hpp"
+#include "myriad/study/store/writer.hpp"
 
 namespace myriad {
 

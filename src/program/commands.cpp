@@ -3,7 +3,6 @@
 #include "program/commands.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -17,66 +16,26 @@
 
 #include <CLI/CLI.hpp>
 
-#include "compile/child_process.hpp"
 #include "myriad/host/backend/device.hpp"
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/options/option_table.hpp"
 #include "myriad/host/report/progress.hpp"
-#include "myriad/kernel/methods/method_list.hpp"
 #include "myriad/program.hpp"
-#include "myriad/study/export.hpp"
-#include "myriad/study/file_system.hpp"
-#include "myriad/study/metadata.hpp"
-#include "myriad/study/stop_signals.hpp"
-#include "myriad/study/store.hpp"
+#include "myriad/study/run/stop_signals.hpp"
+#include "myriad/study/store/file_system.hpp"
+#include "myriad/study/store/metadata.hpp"
+#include "myriad/study/store/store.hpp"
 #include "myriad/study/study.hpp"
 #include "myriad/version.hpp"
-#include "program/model_compiler.hpp"
-#include "program/model_source.hpp"
-#include "program/study_file.hpp"
+#include "program/program_files.hpp"
+#include "program/result_commands.hpp"
+#include "program/wanted_model.hpp"
 
 namespace myriad::programs {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Files that belong to the program: the flags for models, and the script that draws.
-std::string data_file(const char* name) {
-    std::error_code unknown;
-    const fs::path program = fs::read_symlink("/proc/self/exe", unknown);
-    return (program.parent_path() / MYRIAD_PROGRAM_DATA / name).lexically_normal().string();
-}
-
-std::string read_file(const std::string& path) {
-    std::error_code unknown;
-    const fs::file_status status = fs::status(path, unknown);
-    if (fs::is_directory(status)) throw input_error(path + ": is a folder: give a file");
-    if (fs::exists(status) && !fs::is_regular_file(status))
-        throw input_error(path + ": is a device or a pipe, which cannot be read again: give a file");
-    const std::optional<std::string> text =
-        fs::exists(status) ? studies::read_text(studies::file_system::real(), path) : std::nullopt;
-    if (!text) throw input_error(path + ": there is no such file");
-    return *text;
-}
-
-/// For errors that are the input's, with exit status 2.
-template <class Function>
-auto as_input(Function&& function) {
-    try {
-        return function();
-    } catch (const studies::file_error&) {
-        throw;
-    } catch (const input_error&) {
-        throw;
-    } catch (const error& e) {
-        throw input_error(e.what());
-    }
-}
-
-store open_store(const std::string& folder) {
-    return as_input([&] { return store::open(folder); });
-}
 
 std::vector<device> devices_of(const std::vector<std::string>& names) {
     return as_input([&] {
@@ -86,116 +45,9 @@ std::vector<device> devices_of(const std::vector<std::string>& names) {
     });
 }
 
-void tell(const std::string& text) { std::cerr << text << '\n'; }
-
 // ---------------------------------------------------------------------------------------------------------------------
 // Models
 // ---------------------------------------------------------------------------------------------------------------------
-
-const program_model* registered_model(std::string_view name) {
-    for (const program_model& m : registered_models())
-        if (plain_name(m.names.model()) == plain_name(name)) return &m;
-    return nullptr;
-}
-const program_method* method_of(const program_model& model, std::string_view name, studies::element real) {
-    // The last one: what was compiled now, if a program has the same.
-    for (auto m = model.methods.rbegin(); m != model.methods.rend(); ++m)
-        if (m->real == real && m->name == plain_name(name)) return &*m;
-    return nullptr;
-}
-
-/// The text that follows a key's place.
-input_error wrong_at(const text_place& place, const std::string& text) { return input_error(position(place) + text); }
-
-/// The name of the method, dense where samples are wanted.
-std::string method_wanted(const study_file::model_choice& wanted) {
-    const bool is_dense = plain_name(wanted.method).starts_with("dense<");
-    return wanted.samples && !is_dense ? "dense<" + wanted.method + '>' : wanted.method;
-}
-
-const program_model& find_model(const study_file::model_choice& wanted) {
-    if (wanted.model.empty())
-        throw wrong_at(wanted.model_place, "no model is named: write model = \"...\", or give --model");
-    const program_model* const model = registered_model(wanted.model);
-    if (model == nullptr) {
-        std::vector<std::string> names;
-        for (const program_model& m : registered_models()) names.push_back(plain_name(m.names.model()));
-        throw wrong_at(wanted.model_place, message("model: this program has no model \"", wanted.model, '"',
-                                                   names.empty() ? ": name its header, header = \"model.hpp\""
-                                                                 : suggestion(wanted.model, names)));
-    }
-    return *model;
-}
-const program_method& find_method(const program_model& model, const study_file::model_choice& wanted) {
-    const std::string name = method_wanted(wanted);
-    const program_method* const method = method_of(model, name, wanted.real);
-    if (method != nullptr) return *method;
-    // A study that names none takes the only one that the program has.
-    if (wanted.method_place.line == 0 && !wanted.samples && model.methods.size() == 1 &&
-        model.methods.front().real == wanted.real)
-        return model.methods.front();
-    std::vector<std::string> names;
-    for (const program_method& m : model.methods)
-        names.push_back(m.name + (m.real == studies::element::f32 ? " (float)" : ""));
-    throw wrong_at(wanted.method_place,
-                   message("method: ", plain_name(model.names.model()), " was not compiled for ", name,
-                           wanted.real == studies::element::f32 ? " (float)" : "", suggestion(name, names)));
-}
-
-/// The names of the structs that a header defines, also by another name for one.
-std::vector<std::string> structs_of(const std::string& text) {
-    std::vector<std::string> names;
-    const auto is_of_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
-    const std::string_view all = text;
-    for (const std::string_view word : {"struct", "class", "using"}) {
-        for (std::size_t at = 0; (at = all.find(word, at)) != all.npos;) {
-            const bool begins = at == 0 || !is_of_name(all[at - 1]);
-            at += word.size();
-            const std::size_t begin = std::min(all.find_first_not_of(" \t\r\n", at), all.size());
-            std::size_t end = begin;
-            while (end < all.size() && is_of_name(all[end])) ++end;
-            std::string_view rest = all.substr(end);
-            rest.remove_prefix(std::min(rest.find_first_not_of(" \t\r\n"), rest.size()));
-            // What follows tells a definition from a template's parameter, a declaration, and a word in a comment.
-            const bool defines = word == "using" ? rest.starts_with('=')
-                                                 : rest.starts_with('{') || rest.starts_with("final") ||
-                                                       (rest.starts_with(':') && !rest.starts_with("::"));
-            if (begins && begin > at && end > begin && defines) names.emplace_back(all.substr(begin, end - begin));
-        }
-    }
-    return names;
-}
-
-/// Compiles a model's header and registers it.
-void compile_model(const study_file::model_choice& wanted, const model_source& source, compile_permission permission,
-                   bool quiet) {
-    const std::string name = wanted.model.substr(0, wanted.model.find('<'));
-    const std::vector<std::string> structs = structs_of(source.text);
-    const std::string last = name.substr(name.rfind(':') == std::string::npos ? 0 : name.rfind(':') + 1);
-    if (wanted.model == name && std::find(structs.begin(), structs.end(), last) == structs.end())
-        throw wrong_at(wanted.model_place,
-                       message("model: ", source.name, " defines no \"", wanted.model, '"', suggestion(last, structs)));
-#define METHOD_NAME(method) #method,
-    constexpr const char* methods[] = {MYRIAD_METHODS(METHOD_NAME)};
-#undef METHOD_NAME
-    const std::string method = plain_name(wanted.method);
-    const bool is_plain = method.find_first_of("<:") == std::string::npos;
-    if (is_plain && std::find(std::begin(methods), std::end(methods), method) == std::end(methods) &&
-        source.text.find(method) == std::string::npos)
-        throw wrong_at(wanted.method_place,
-                       message("method: there is no method \"", wanted.method, '"',
-                               suggestion(method, std::vector<std::string>(std::begin(methods), std::end(methods)))));
-    try {
-        compile_and_load(
-            {source, wanted.model, method_wanted(wanted), wanted.real}, data_file("model_flags.txt"), permission,
-            [&](const std::string& text) {
-                if (!quiet) tell(text);
-            },
-            &tell);
-    } catch (const error& e) {
-        throw wrong_at(wanted.header_place, e.what());
-    }
-}
 
 void show_list(const std::string& what, const std::vector<std::string>& names) {
     if (names.empty()) return;
@@ -262,30 +114,6 @@ model_source kept_source(const std::string& path) {
     if (source.text.starts_with("#line 1 \"") && end != std::string::npos)
         source.name = source.text.substr(begin + 1, end - begin - 1);
     return source;
-}
-
-/// Says how much of the results is not there yet. Throws `error` if all of it is asked for.
-void tell_missing(const studies::results& from, bool require_complete) {
-    const std::string missing = studies::missing_text(from);
-    if (missing.empty()) return;
-    if (require_complete) throw error(missing + ": nothing is written; `myriad resume` goes on with the study");
-    tell("incomplete: " + missing);
-}
-
-void export_results(const studies::results& from, const std::string& path, const std::string& variable) {
-    const std::string kind = fs::path(path).extension().string();
-    if (kind != ".npy" && !variable.empty())
-        throw input_error("--variable is for NPY files, which hold one variable: others hold all");
-    if (kind == ".nc") return export_netcdf(from, path);
-    if (kind == ".csv") return export_csv(from, path);
-    if (kind != ".npy") throw input_error(path + ": the name must end in .nc (netCDF), .csv or .npy");
-    if (variable.empty()) throw input_error("an NPY file holds one variable: name it by --variable");
-    as_input([&] {
-        for (const studies::coordinate& c : from.content().coordinates)
-            if (c.name == variable) return;
-        from.content().find(variable);
-    });
-    export_npy(from, variable, path);
 }
 
 /// A path that a file names, which is from the folder of that file.
@@ -450,94 +278,6 @@ int list(const std::vector<std::string>& files, const run_request& asked) {
             << "This program has no models of its own: `myriad list model.hpp --model NAME --compile` shows those of "
                "a header, and `header = \"model.hpp\"` in a study's file compiles them.\n";
     return 0;
-}
-
-// ---------------------------------------------------------------------------------------------------------------------
-// Results
-// ---------------------------------------------------------------------------------------------------------------------
-
-std::string text_of(const studies::attribute& a) {
-    const auto joined = [](const auto& list) {
-        std::string all;
-        for (const auto value : list) all += message(all.empty() ? "" : ", ", value);
-        return message('[', all, ']');
-    };
-    if (const auto* const text = std::get_if<std::string>(&a.value)) return *text;
-    if (const auto* const number = std::get_if<double>(&a.value)) return studies::exact_text(*number);
-    if (const auto* const number = std::get_if<std::int64_t>(&a.value)) return std::to_string(*number);
-    if (const auto* const list = std::get_if<std::vector<double>>(&a.value)) return joined(*list);
-    return joined(std::get<std::vector<std::int64_t>>(a.value));
-}
-
-std::string shape_text(const studies::layout& content, const studies::variable& v) {
-    std::string text;
-    const auto add = [&](const std::string& name, std::int64_t length) {
-        text += message(text.empty() ? "" : ", ", name, " = ", length);
-    };
-    if (v.extent == studies::along::instances)
-        for (const studies::dimension& d : content.axes) add(d.name, d.length);
-    for (const studies::dimension& d : v.inner) add(d.name, d.length);
-    return text.empty() ? "one value" : text;
-}
-
-int info(const std::string& folder, bool verify, bool as_json) {
-    store there = open_store(folder);
-    const studies::layout& content = there.content();
-    if (as_json) {
-        std::cout << studies::contents_json(content);
-        return 0;
-    }
-    const studies::store_progress now = there.progress();
-    std::cout << there.folder() << '\n'
-              << message("done: ", now.chunks, " of ", now.all_chunks, " chunks, ", now.instances, " of ",
-                         now.all_instances, " instances; ", now.seconds, " s of computing\n");
-    for (const auto& [name, count] : now.statuses) std::cout << message("  ", name, ": ", count, '\n');
-    if (now.damaged > 0)
-        tell(message("damaged: the records of ", now.damaged, " chunks, which are not counted: --verify says which"));
-    for (const std::string& device : there.devices()) std::cout << "device: " << device << '\n';
-    for (const studies::arithmetic& a : there.arithmetics())
-        std::cout << message("computed by: ", a.text(), ", on ", a.host, '\n');
-    std::cout << "variables:\n";
-    for (const studies::variable& v : content.variables)
-        if (v.extent != studies::along::chunks)
-            std::cout << message("  ", v.name, ": ", studies::name_of(v.type), ", ", shape_text(content, v), '\n');
-    std::cout << "study:\n";
-    for (const studies::attribute& a : studies::attributes_of(content.description)) {
-        std::string text = text_of(a);
-        if (text.size() > 200) text = text.substr(0, 200) + " ...";
-        std::cout << message("  ", a.name, ": ", text, '\n');
-    }
-    if (!verify) return now.damaged > 0 ? 1 : 0;
-    const std::vector<studies::damage> damaged = there.verify();
-    for (const studies::damage& d : damaged)
-        tell(message("damaged: ", d.chunk >= 0 ? message("chunk ", d.chunk, ", ") : "", d.variable, ": ", d.reason));
-    if (damaged.empty()) std::cout << "all checksums are right\n";
-    return damaged.empty() ? 0 : 1;
-}
-
-/// A Python that can draw: the first on the PATH may not be the one that the system's packages are for.
-std::string find_python(bool reads_files) {
-    // As plot.py does: no modules from the folder it is run in or from PYTHONPATH, but those that the user installed.
-    const std::string imports = message("import site; site.addsitedir(site.getusersitepackages()); import matplotlib",
-                                        reads_files ? ", netCDF4" : "");
-    for (const char* python : {"python3", "/usr/bin/python3"})
-        if (compiling::child_process({python, "-I", "-c", imports}, "/dev/null").wait() == 0) return python;
-    throw error(message("pictures need a Python 3 with matplotlib", reads_files ? " and netCDF4" : "",
-                        ": install it (Debian, Ubuntu: apt-get install python3-matplotlib",
-                        reads_files ? " python3-netcdf4), or draw the folder of the results" : ")"));
-}
-
-/// Runs the script that draws, with all arguments of the command, which it knows.
-int plot(const std::vector<std::string>& arguments) {
-    const std::string script = data_file("plot.py");
-    if (!fs::is_regular_file(script)) throw error("this program draws nothing, as " + script + " is missing");
-    const bool reads_files = std::any_of(arguments.begin(), arguments.end(),
-                                         [](const std::string& word) { return fs::is_regular_file(word); });
-    std::vector<std::string> words{find_python(reads_files), "-I", "-B", script,
-                                   "--reader=" + fs::read_symlink("/proc/self/exe").string()};
-    words.insert(words.end(), arguments.begin(), arguments.end());
-    const int status = compiling::child_process(words).wait();
-    return status == 0 || status == 2 ? status : 1;
 }
 
 int parse_and_run(int argc, const char* const* argv) {

@@ -6,7 +6,7 @@
 #include <functional>
 #include <string>
 
-#include "myriad/study/layout.hpp"
+#include "myriad/study/plan/layout.hpp"
 #include "program/model_source.hpp"
 
 namespace myriad::programs {

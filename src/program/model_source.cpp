@@ -11,7 +11,7 @@
 
 #include "compile/compiled_cache.hpp"
 #include "myriad/host/core/error.hpp"
-#include "myriad/study/file_system.hpp"
+#include "myriad/study/store/file_system.hpp"
 
 namespace myriad::programs {
 

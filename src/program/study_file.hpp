@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "myriad/program.hpp"
-#include "myriad/study/axes.hpp"
+#include "myriad/study/plan/axes.hpp"
 #include "myriad/study/study.hpp"
 #include "program/section.hpp"
 #include "program/toml_value.hpp"

@@ -10,12 +10,12 @@
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/memory/memory_need.hpp"
 #include "myriad/host/report/status_names.hpp"
-#include "myriad/study/chunk_solver.hpp"
-#include "myriad/study/kinds.hpp"
-#include "myriad/study/metadata.hpp"
-#include "myriad/study/result_keeper.hpp"
-#include "myriad/study/runner.hpp"
-#include "myriad/study/stop_signals.hpp"
+#include "myriad/study/plan/kinds.hpp"
+#include "myriad/study/run/chunk_solver.hpp"
+#include "myriad/study/run/result_keeper.hpp"
+#include "myriad/study/run/runner.hpp"
+#include "myriad/study/run/stop_signals.hpp"
+#include "myriad/study/store/metadata.hpp"
 
 namespace myriad {
 
@@ -300,8 +300,8 @@ study_result any_study::finish(studies::handed_out_run& run) {
     const studies::run_settings settings{.devices = {}, .stops = [] { return true; }};
     studies::run_outcome outcome = studies::run_study(*model_, run.plan(), run.keeper(), settings);
     outcome.instances = run.instances();
-    outcome.by_status = run.by_status();
-    outcome.notes = run.notes();
+    outcome.by_status = run.how().by_status;
+    outcome.notes = run.how().notes;
     return result_of(run.keeper(), std::move(outcome));
 }
 

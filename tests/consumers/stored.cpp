@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <vector>
 
-#include <myriad/study/export.hpp>
-#include <myriad/study/store.hpp>
+#include <myriad/study/export/export.hpp>
+#include <myriad/study/store/store.hpp>
 
 int main() {
     myriad::studies::layout content;

@@ -101,7 +101,7 @@ expect "a run without tests is a failure" 0 '^0 1 0$' in_lib "count_tests '$work
 
 # Steps, with a cmake and a ctest that only say how they were called, and packages that are all there.
 mkdir -p "$work/steps/scripts" "$work/programs"
-cp scripts/test.sh scripts/lib.sh "$work/steps/scripts"
+cp scripts/test.sh scripts/lib.sh scripts/budgets.txt "$work/steps/scripts"
 sed -i 's/^require_packages .*//' "$work/steps/scripts/test.sh"
 cat >"$work/programs/cmake" <<'END'
 #!/bin/sh
@@ -123,6 +123,11 @@ last_of_steps() { run_steps "$@" | tail -n 1; }
 expect "test.sh fails where a test does" 1 'ci: 1 passed, 1 failed' run_steps --quick
 expect "test.sh ends with the counts" 1 '^4 passed, 1 failed$' last_of_steps --only programs,ci
 expect "test.sh succeeds where all tests do" 0 '^succeeded$' last_of_steps --only programs
+expect "test.sh says what a step computed" 0 'programs +[0-9]+ +[0-9]+ +[1-9][0-9]+$' run_steps --only programs
+printf 'programs 0\n' >"$work/steps/scripts/budgets.txt"
+expect "a step that computes for longer than its budget is a failure" 1 'programs: FAILED, it computed for [1-9]' \
+    env 'BASH_FUNC_cmake%%=() { awk "BEGIN { for (i = 0; i < 4e7; i++); }"; }' PATH="$work/programs:$PATH" \
+    "$work/steps/scripts/test.sh" --only programs
 rm "$work/steps/calls"
 run_steps --only ci,programs >/dev/null
 left_out=$(sed -n 's/^ctest .* --label-exclude ^cuda$|//p' "$work/steps/calls")

@@ -11,7 +11,7 @@ import re
 import sys
 
 PYTHON = ("python/myriad_ode/**/*.py", "scripts/*.py")
-CPP = ("src/*/*.cpp", "src/*/*/*.cpp", "src/*/*.hpp", "include/myriad/host/*/*.hpp", "include/myriad/study/*.hpp",
+CPP = ("src/*/*.cpp", "src/*/*/*.cpp", "src/*/*.hpp", "include/myriad/host/*/*.hpp", "include/myriad/study/**/*.hpp",
        "python/src/*.cpp", "python/src/*.hpp", "backends/cuda/myriad/cuda/*.cuh")
 SEARCHES = {"count", "endswith", "find", "index", "partition", "removeprefix", "removesuffix", "replace", "rfind",
             "rindex", "rpartition", "rsplit", "split", "splitlines", "startswith", "translate"}

@@ -17,13 +17,13 @@
 #include <fcntl.h>
 #include <myriad/myriad.hpp>
 #include <myriad/study.hpp>
-#include <myriad/study/sealed_text.hpp>
+#include <myriad/study/store/sealed_text.hpp>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "tests/catch.hpp"
-#include "tests/study/content.hpp"
 #include "tests/study/models.hpp"
+#include "tests/study/store/content.hpp"
 #include "tests/support/message_of.hpp"
 
 namespace {

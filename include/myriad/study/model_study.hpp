@@ -18,8 +18,8 @@
 #include "myriad/host/solve/solve.hpp"
 #include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/study/generator.hpp"
-#include "myriad/study/component_names.hpp"
-#include "myriad/study/studied_model.hpp"
+#include "myriad/study/plan/component_names.hpp"
+#include "myriad/study/run/studied_model.hpp"
 #include "myriad/study/study.hpp"
 
 namespace myriad {

@@ -23,12 +23,12 @@
 #include "myriad/host/report/status_names.hpp"
 #include "myriad/kernel/core/abi.hpp"
 #include "myriad/kernel/core/status.hpp"
-#include "myriad/study/axes.hpp"
-#include "myriad/study/handed_out_run.hpp"
-#include "myriad/study/layout.hpp"
-#include "myriad/study/reduction.hpp"
-#include "myriad/study/store.hpp"
-#include "myriad/study/study_plan.hpp"
+#include "myriad/study/plan/axes.hpp"
+#include "myriad/study/plan/layout.hpp"
+#include "myriad/study/plan/reduction.hpp"
+#include "myriad/study/plan/study_plan.hpp"
+#include "myriad/study/run/handed_out_run.hpp"
+#include "myriad/study/store/store.hpp"
 
 namespace myriad {
 

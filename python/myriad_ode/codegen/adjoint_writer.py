@@ -12,11 +12,12 @@ from ..models.methods import method_type, stiff
 from ..symbolic import symbols as sym
 from ..symbolic.derivatives import directional, transposed
 from ..symbolic.expression import constant, make
-from .cpp_writer import Names, Writer
+from .cpp_body import Names
+from .cpp_writer import Writer
 from .model import Model
 
 if TYPE_CHECKING:
-    from ..symbolic.expression import Node
+    from ..symbolic.node import Node
 
 _cure = "leave out adjoint=True, for forward sensitivities"
 

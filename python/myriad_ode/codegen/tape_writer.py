@@ -12,12 +12,14 @@ from ..base import component_kinds as kinds
 from ..base.errors import CannotInterpret, Error
 from ..models.recorded import RecordedModel
 from ..symbolic import symbols as sym
-from ..symbolic.expression import constant, integer, is_long, walk
+from ..symbolic.expression import constant
+from ..symbolic.node import integer, walk
+from ..symbolic.whole_and_real import is_long
 
 if TYPE_CHECKING:
     from ..models.components import Components
     from ..models.trigger import Edge
-    from ..symbolic.expression import Node
+    from ..symbolic.node import Node
     from ..symbolic.types import Assignments
 
 methods = tuple(_core.interpreted_methods())

@@ -7,8 +7,10 @@ import copy
 from typing import TYPE_CHECKING, Any
 
 from ..models.units import CouplingTable, of_units
-from ..symbolic.expression import Node, make, symbols_of, walk
-from .cpp_writer import Body, Names, Writer, _wrap
+from ..symbolic.expression import make
+from ..symbolic.node import Node, symbols_of, walk
+from .cpp_body import Body, Names, branches, wrap
+from .cpp_writer import Writer
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -199,7 +201,7 @@ class UnitForm(Writer):
             blocks += [self._function(name, count, roots)] if roots else []
         blocks += self._hook_functions()
         out = ["// SPDX-License-Identifier: MIT", "// Written by Myriad's Python package from traced units.", "",
-               f"struct {struct}_unit {{", *("    " + line for one in lines for line in _wrap(one, 0))]
+               f"struct {struct}_unit {{", *("    " + line for one in lines for line in wrap(one, 0))]
         for block in blocks:
             out += ["", *("    " + line if line else line for line in block)]
         return "\n".join([*out, "};", f"using {struct} = myriad::coupled_units<{struct}_unit, {n}>;", ""])
@@ -288,12 +290,12 @@ class UnitForm(Writer):
         body = Body(roots, names, self.in_function, scalar=False)
         values = [f"{names.R}({body.text(root)})" for root in roots]
         out = [f"template <class {names.R}>"]
-        out += _wrap(f"MYRIAD_FUNCTION static myriad::vec<{names.R}, {count}> {name}([[maybe_unused]] int unit, "
+        out += wrap(f"MYRIAD_FUNCTION static myriad::vec<{names.R}, {count}> {name}([[maybe_unused]] int unit, "
                      f"[[maybe_unused]] auto {names.t}, [[maybe_unused]] const auto& {names.y}, "
                      f"[[maybe_unused]] const auto& {names.p}) {{", 0)
         for line in [*self._distances(roots), *body.lines]:
-            out += _wrap(line, 4)
-        return [*out, *_wrap(f"return myriad::vec<{names.R}, {count}>{{{', '.join(values)}}};", 4), "}"]
+            out += wrap(line, 4)
+        return [*out, *wrap(f"return myriad::vec<{names.R}, {count}>{{{', '.join(values)}}};", 4), "}"]
 
     def _hook_functions(self) -> Iterable[list[str]]:
         """The hooks that there are."""
@@ -304,14 +306,14 @@ class UnitForm(Writer):
         if any(self.at_events):
             several = zip(self.of_unit["event_count"], self.at_events)
             acting = [(name, self._statements_of_event(do)) for name, do in several if do]
-            lines = self.branches("event", acting, len(self.at_events))
+            lines = branches("event", acting, len(self.at_events))
             yield self._hook("after_event", f"[[maybe_unused]] int unit, [[maybe_unused]] int event, {lane}", lines)
         if model.stops:
             yield self.stop_time()
         if any(system or own for system, own in self.at_stops):
             acting = [(str(stop.name), self._statements_of_each(system, own))
                       for stop, (system, own) in zip(model.stops, self.at_stops) if system or own]
-            lines = self.branches("stop", acting, len(model.stops))
+            lines = branches("stop", acting, len(model.stops))
             which = "int stop" if len(model.stops) > 1 else "int"
             yield self._hook("after_stop", f"[[maybe_unused]] int unit, {which}, int, {lane}", lines)
         if model.generate:

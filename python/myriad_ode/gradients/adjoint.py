@@ -27,14 +27,15 @@ from ..models.triggers_as_events import with_events
 from ..solving.gather import ends_of
 from ..sweeps.inputs import numbers, real
 from ..symbolic import symbols as sym
-from ..symbolic.expression import constant, symbols_of, text, walk
+from ..symbolic.expression import constant
+from ..symbolic.node import symbols_of, text, walk
 from ..symbolic.rewrite import substituted
 from .forward import Forward
 
 if TYPE_CHECKING:
     from ..models.any_model import AnyModel
     from ..results.run import Run
-    from ..symbolic.expression import Node
+    from ..symbolic.node import Node
     from ..symbolic.types import Array
 
 # Most bytes of records of a group of instances that are integrated at a time; a single instance may have more. On a

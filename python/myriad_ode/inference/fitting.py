@@ -12,7 +12,8 @@ import numpy as np
 from ..base import plots
 from ..base.errors import Error
 from ..models.components import by_component, listed, name_of, unknown
-from ..results.run import Interrupted, Run
+from ..results.report import Interrupted
+from ..results.run import Run
 from ..sweeps.inputs import whole
 from .designs import hypercube
 from .least_squares import LeastSquares

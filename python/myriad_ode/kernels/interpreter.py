@@ -14,7 +14,8 @@ from ..base.errors import Error
 from ..codegen.tape_writer import Writer, _refuse, _size_for, _sizes, methods
 from ..models.recorded import RecordedModel
 from ..symbolic import symbols as sym
-from ..symbolic.expression import constant, fma, where
+from ..symbolic.expression import constant
+from ..symbolic.functions import fma, where
 from .compiler import Kernel
 
 if TYPE_CHECKING:
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from ..models.components import Components
     from ..models.event import Event, Stop
     from ..models.trigger import Edge, Trigger
-    from ..symbolic.expression import Node
+    from ..symbolic.node import Node
 
 
 def library(model: AnyModel, components: Components, method: str) -> _core.Library:

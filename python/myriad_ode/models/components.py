@@ -13,7 +13,8 @@ from ..base import component_kinds as kinds
 from ..base.errors import Error
 from ..symbolic import symbols as sym
 from ..symbolic.evaluate import evaluate
-from ..symbolic.expression import Node, is_sympy, symbols_of, text
+from ..symbolic.expression import is_sympy
+from ..symbolic.node import Node, symbols_of, text
 from ..symbolic.read_text import sympy_name
 from .any_model import counts_of, names_of
 from .units import one_by_one, spread

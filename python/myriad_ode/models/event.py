@@ -12,7 +12,7 @@ import numpy as np
 from ..base import component_kinds as kinds
 from ..base.errors import Error, at, users_line
 from ..symbolic import symbols as sym
-from ..symbolic.expression import symbols_of
+from ..symbolic.node import symbols_of
 from ..symbolic.numbers import is_whole
 
 if TYPE_CHECKING:

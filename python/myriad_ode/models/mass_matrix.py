@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..base.errors import Error, at
-from ..symbolic.expression import Node, text
+from ..symbolic.node import Node, text
 
 if TYPE_CHECKING:
     from .any_model import AnyModel

@@ -14,13 +14,15 @@ from typing import TYPE_CHECKING, Any
 from .. import _core
 from ..symbolic import expression as ex, symbols as sym
 from ..symbolic.operations import cost
-from ..symbolic.expression import draws, real, walk
+from ..symbolic.functions import draws
+from ..symbolic.node import real, walk
 from ..symbolic.folding import constant, is_constant, value_of
 from ..symbolic.rewrite import rebuilt, replaced
 from .any_model import counts_of
 
 if TYPE_CHECKING:
-    from ..symbolic.expression import Expression, Node
+    from ..symbolic.expression import Expression
+    from ..symbolic.node import Node
     from .recorded import RecordedModel
 
 

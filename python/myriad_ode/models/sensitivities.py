@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ..base.errors import Error, at, users_line
-from ..symbolic.expression import Node
+from ..symbolic.node import Node
 from ..symbolic.symbols import t_begin, t_end
 from . import state_jumps
 from .components import Components, listed, unknown

@@ -16,7 +16,8 @@ import numpy as np
 from ..base.errors import Error
 from ..symbolic import expression as ex, symbols as sym
 from ..symbolic.evaluate import evaluate
-from ..symbolic.expression import make, symbols_of, text, walk
+from ..symbolic.expression import make
+from ..symbolic.node import symbols_of, text, walk
 from ..symbolic.rewrite import rebuilt, replaced
 from .recorded import RecordedModel
 
@@ -60,7 +61,7 @@ def _where(found: Sequence[str]) -> str:
 
 def _jumps_of(model: RecordedModel) -> list[str]:
     roots = rebuilt([*model.equations.values(), *(quantity for _, quantity in model.quantities_as_given)],
-                    model.switches.without_copysign)
+                    model.switches.times_of.without_copysign)
     moving = {sym.time, *(s for s, rate in model.equations.items() if not (rate.op == "constant" and rate.value == 0))}
     return [text(node) for node in walk(roots)
             if (surface := _Surface.of(node)) is not None and node not in model.switches.located

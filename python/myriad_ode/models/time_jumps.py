@@ -3,39 +3,24 @@
 parts and remainders of time.
 
 Steps end at each of these times, so that no step passes over what happens between two of them. Between two of them
-everything that jumps keeps the value that it has halfway.
-
-At the time of a jump, rounding may put what is compared on either side of it. So the next jump is sought a little later
-than now: by the rounding errors of what is compared, which depend on its summands and on the precision of the run.
+everything that jumps keeps the value that it has halfway. The times are those of jump_times.py.
 """
 
 from __future__ import annotations
 
-import functools
 import math
 from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..symbolic import expression as ex, symbols as sym
-from ..symbolic.expression import symbols_of, text, walk
-from ..symbolic.folding import (add, apply, both, choose, compare, constant, divide, is_constant, make_folded,
-                                multiply, subtract, total, value_of)
+from ..symbolic.folding import both, choose, compare, constant, is_constant, value_of
+from ..symbolic.node import symbols_of, text, walk
 from ..symbolic.rewrite import rebuilt, replaced
+from .jump_times import JumpTimes, Time, is_less, kinked, unit_roundoff
 
 if TYPE_CHECKING:
     from ..symbolic.types import Assignments
     from .any_model import AnyModel
-
-_comparisons = "less", "less_equal", "greater", "greater_equal", "equal", "not_equal"
-_remainders = "fmod", "floor_mod"
-_whole = "floor", "rint", "floor_divide", *_remainders
-_kinked = "abs", "min", "max"
-_waves = {"sin": (math.pi, ex.asin), "cos": (math.pi, ex.acos), "sinpi": (1.0, ex.asin), "cospi": (1.0, ex.acos)}
-
-_one = constant(1.0)
-
-Form = dict[Any, Any]  #: a sum: coefficients by what they multiply, which is 1, the time, or a function of time
-Time = tuple[Any, Any]  #: a time, and how far it has to be ahead to be still to come
 
 
 def note(model: AnyModel, longest_step: float | None) -> str | None:
@@ -47,13 +32,6 @@ def note(model: AnyModel, longest_step: float | None) -> str | None:
     jumps = " and ".join(f"`{jump}`" for jump in model.jumps_to_miss)
     return (f"the model jumps where {jumps} changes, at times where no step ends: it may pass over what is between two "
             f"of them; give a maximum_step= shorter than that{rename}")
-
-
-def unit_roundoff() -> Any:
-    """The largest relative error of rounding in the precision of a run. One text is compiled for both: 1 + 1e-10 is 1
-    in single precision alone."""
-    one = 1.0 + ex.abs(sym.t_begin)
-    return choose(compare("equal", one * (1.0 + 1e-10), one), constant(2.0**-24), constant(2.0**-53))
 
 
 class Switch:
@@ -102,38 +80,30 @@ class TimeSwitches:
         self.located: set[Any] = set()  #: what jumps at times at which steps end
         self.unknown: list[str] = []
         self.jumps: list[str] = []  #: all of them, known or not
-        self._changing = changing
-        self._still = {s for s, rate in equations.items() if s not in changing and
-                       is_constant(rate) and value_of(rate) == 0}
-        self._clocks = {s: rate for s, rate in equations.items() if s not in changing and  # which measure time
-                        s not in self._still and self._is_still(rate)}
-        states, jumping = list(equations), rebuilt([*equations.values(), *quantities], self.without_copysign)
-        functions = rebuilt(list(functions), self.without_copysign)
-        self._forms: dict[Any, Form | None] = {}
-        self._times: dict[Any, list[Time] | None] = {}
-        self._kinks: list[Any] = []
-        self._direction = choose(compare("less", sym.t_end, sym.t_begin), constant(-1.0), constant(1.0))
-        found = {node: self._times_of(node) for node in walk([*jumping, *functions]) if self._may_jump(node)}
+        times_of = self.times_of = JumpTimes(equations, changing)
+        states, jumping = list(equations), rebuilt([*equations.values(), *quantities], times_of.without_copysign)
+        functions = rebuilt(list(functions), times_of.without_copysign)
+        found = {node: times_of(node) for node in walk([*jumping, *functions]) if times_of.may_jump(node)}
         self.jumps = [text(node) for node in found]
         self.unknown = [text(node) for node, times in found.items() if times is None]
         in_events = {node for node in walk(functions) if found.get(node)}
         for function in functions:
-            if self._is_of_time(function) and (any(node in found for node in walk([function])) or any(
-                    key is not sym.time and key is not _one for key in self._form(function) or ())):
+            if times_of.is_of_time(function) and (any(node in found for node in walk([function])) or
+                                                  times_of.comes_back(function)):
                 crossing = compare("less", function, constant(0.0))
-                found[crossing] = self._times_of(crossing)
+                found[crossing] = times_of(crossing)
                 in_events.add(crossing)
-        found |= {kink: self._times_of(kink) for kink in self._kinks}
+        found |= {kink: times_of(kink) for kink in times_of.kinks}
         between: dict[Any, Any] = {}
         for nodes, whole in self._apart(found, jumping, moves):
             if not (times := self._all_times(found, nodes)):
                 continue
-            switch = Switch(self._first(times), self._direction, not in_events.isdisjoint(nodes), free_name)
+            switch = Switch(times_of.first(times), times_of.direction, not in_events.isdisjoint(nodes), free_name)
             self.switches.append(switch)
             inside: dict[Any, Any] = {}
             for node in nodes:  # arguments come before what is of them
                 if found[node] is not None:
-                    inside[node] = self._between(node, switch.between, inside)
+                    inside[node] = times_of.between(node, switch.between, inside)
             between |= {whole: inside[whole]} if whole is not None else inside
         self.located = {node for node, several in found.items() if several is not None}
         if self.switches:
@@ -168,16 +138,16 @@ class TimeSwitches:
         apart = []
         for node in outermost:
             inside = set(walk([node]))
-            inside |= {_is_less(one) for one in inside if one.op in _kinked}
+            inside |= {is_less(one) for one in inside if one.op in kinked}
             nodes = [one for one in found if one in inside]
             times = self._all_times(found, nodes)
-            if times and moves is not None and moves(set(symbols_of([self._first(times)]))):
+            if times and moves is not None and moves(set(symbols_of([self.times_of.first(times)]))):
                 apart.append((nodes, node))
         if not apart:
             return [(list(found), None)]
         alone = {node for _, node in apart}
         seen = set(walk([node for node in outermost if node not in alone]))
-        seen |= {_is_less(one) for one in seen if one.op in _kinked}
+        seen |= {is_less(one) for one in seen if one.op in kinked}
         in_some = {node for nodes, _ in apart for node in nodes}
         others = [node for node in found if node in seen or node not in in_some]
         return [*apart, (others, None)]
@@ -206,211 +176,3 @@ class TimeSwitches:
         further = {target: value for one in self.switches if begins or not one.needed.isdisjoint(known)
                    for target, value in one.at_start.items()}
         return [*assignments, *zip(further, replaced(list(further.values()), known))]
-
-    def _may_jump(self, node: Any) -> bool:
-        return node.op in (*_comparisons, *_whole) and node.value != ex.continuous and self._is_of_time(node)
-
-    def without_copysign(self, node: Any) -> Any:
-        """The sign of a function of time as a choice."""
-        if node.op != "copysign" or not self._is_of_time(node.args[1]):
-            return node
-        size = ex.abs(node.args[0])
-        return choose(compare("less", node.args[1], constant(0.0)), make_folded("negate", size), size)
-
-    def _is_of_time(self, node: Any) -> bool:
-        """Whether time and what changes at actions alone decide an expression."""
-        return self._has_time(node) and all(s is sym.time or s in self._clocks or self._is_still(s)
-                                            for s in symbols_of([node]))
-
-    def _has_time(self, node: Any) -> bool:
-        return any(s is sym.time or s in self._clocks for s in symbols_of([node]))
-
-    def _is_still(self, node: Any) -> bool:
-        """Whether an expression changes at actions alone."""
-        kinds = "parameter", "shared", "shared_integer", "accessory", "integer_accessory"
-        return all(s.value[0] in kinds and s not in self._changing or s in self._still for s in symbols_of([node]))
-
-    def _at(self, node: Any, time: Any) -> Any:
-        """An expression at another time."""
-        clocks = {s: s + rate * (time - sym.time) for s, rate in self._clocks.items()}
-        return replaced([node], {sym.time: time, **clocks})[0]
-
-    def _first(self, times: list[Time]) -> Any:
-        """The first of some times that is still to come, infinite if there is none. Multiplied by the direction, so
-        that it is the smallest backwards, too."""
-        to_come = [choose(compare("greater", self._direction * (t - sym.time), ahead), self._direction * t,
-                          constant(math.inf)) for t, ahead in times]
-        return self._direction * functools.reduce(lambda a, b: ex.make("min", (a, b)), to_come)
-
-    def _between(self, node: Any, middle: Any, known: dict[Any, Any]) -> Any:
-        """What jumps, as it is between two jumps; what jumps in it is known."""
-        inside = self._at(node, middle)
-        if node.op not in _remainders:
-            return inside
-        value, = replaced([node.args[0]], known)
-        return subtract(value, subtract(self._at(node.args[0], middle), inside))  # less whole multiples
-
-    # -- When it jumps -------------------------------------------------------------------------------------------------
-
-    def _times_of(self, node: Any) -> list[Time] | None:
-        """Some times, among them the last jump before now and the next one; None if they have no formula."""
-        if node not in self._times:
-            self._times[node] = self._found_times_of(node)
-        return self._times[node]
-
-    def _found_times_of(self, node: Any) -> list[Time] | None:
-        if node.op in _comparisons:
-            form = self._form(_decisive(node))
-            waves = _waves_of(form)
-            if form is None or len(waves) > 1 or waves and sym.time in form:
-                return None
-            if waves:
-                rest = self._rest({key: factor for key, factor in form.items() if key is not waves[0]})
-                return self._angles(waves[0], divide(_negative(rest), form[waves[0]]))
-            return self._roots(form, [constant(0.0)])
-        inside = _decisive(node)
-        form = self._form(inside)
-        if form is None or _waves_of(form):
-            return None
-        shift = 0.5 if node.op == "rint" else 0.0
-        below = apply(ex.floor, subtract(self._now_of(inside, form), constant(shift)))
-        return self._roots(form, [add(below, constant(shift + k)) for k in (-1, 0, 1)])
-
-    def _now_of(self, node: Any, own: Form | None = None) -> Any:
-        """The value of an expression a little later than now, so that rounding cannot put it before a jump that is at
-        this time. `own`: the expression as a sum, where its own size decides, as of whole parts and angles."""
-        inside = [self._form(_decisive(one)) for one in walk([node]) if self._may_jump(one)]
-        forms = [form for form in (own, *inside) if form is not None]
-        if not forms:
-            return node
-        ahead = functools.reduce(lambda a, b: ex.make("max", (a, b)), [self._ahead(form) for form in forms])
-        return self._at(node, sym.time + self._direction * ahead)
-
-    def _ahead(self, form: Form) -> Any:
-        """The error of the time at which a sum has some value, by rounding; more than zero, so that one is ahead of a
-        jump at zero, too."""
-        size = total([ex.abs(self._term(factor, key)) for key, factor in form.items() if key is not sym.time])
-        if (by := form.get(sym.time)) is not None:
-            size = choose(compare("equal", by, constant(0.0)), constant(0.0), divide(size, ex.abs(by)))
-        return 16.0 * unit_roundoff() * (ex.abs(sym.time) + size) + 1e-30
-
-    def _rest(self, form: Form) -> Any:
-        """A sum without its multiple of the time."""
-        return total([self._term(factor, self._now_of(key)) for key, factor in form.items() if key is not sym.time])
-
-    @staticmethod
-    def _term(factor: Any, value: Any) -> Any:
-        """A product that is zero where the factor is, even if the value is not finite, as floor(time / 0)."""
-        product = multiply(factor, value)
-        if is_constant(factor) or is_constant(value):
-            return product
-        return choose(compare("equal", factor, constant(0.0)), constant(0.0), product)
-
-    def _roots(self, form: Form, values: list[Any]) -> list[Time]:
-        """The times at which a sum has some values."""
-        if sym.time not in form:
-            return []
-        less = _negative(self._rest(form))
-        times = [divide(add(value, less), form[sym.time]) for value in values]
-        # what does not follow from the time has the same bits whenever it is computed
-        ahead = self._ahead(form) if any(self._has_time(one) for one in times) else constant(0.0)
-        return [(time, ahead) for time in times]
-
-    def _angles(self, wave: Any, height: Any) -> list[Time]:
-        """The times at which a sine or cosine of time has a value."""
-        angle, = wave.args
-        form = self._form(angle)
-        assert form is not None
-        half_turn, inverse = _waves[wave.op]
-        principal = multiply(constant(half_turn / math.pi), apply(inverse, height))
-        other = subtract(constant(half_turn if wave.op in ("sin", "sinpi") else 0.0), principal)
-        turns = apply(ex.floor, divide(self._now_of(angle, form), constant(2 * half_turn)))
-        return self._roots(form, [add(one, multiply(add(turns, constant(k)), constant(2 * half_turn)))
-                                  for one in (principal, other) for k in (-1.0, 0.0, 1.0)])
-
-    # -- Sums ----------------------------------------------------------------------------------------------------------
-
-    def _form(self, node: Any) -> Form | None:
-        """An expression of time and constants as a sum that is valid until the next jump; None if it is none."""
-        if node not in self._forms:
-            self._forms[node] = self._form_of(node)
-        return self._forms[node]
-
-    def _form_of(self, node: Any) -> Form | None:
-        if node is sym.time:
-            return {sym.time: _one}
-        if node in self._clocks:
-            rate = self._clocks[node]
-            return {sym.time: rate, _one: node - rate * sym.time}
-        if not self._has_time(node):
-            return {_one: node}
-        if node.op in _kinked:
-            return self._form(self._with_kink(node))
-        forms: list[Form] = []
-        for argument in node.args:
-            form = {} if argument.type == ex.condition else self._form(argument)
-            if form is None:
-                return None
-            forms.append(form)
-        first, second, third = [*forms, {}, {}][:3]
-        jumps = [node] if node.op in _whole else walk(node.args[:1]) if node.op == "select" else []
-        if any(self._may_jump(one) and self._times_of(one) is None for one in jumps):
-            return None
-        if node.op == "select":
-            chosen = self._now_of(node.args[0])
-            return {key: choose(chosen, second.get(key, constant(0.0)), third.get(key, constant(0.0)))
-                    for key in {**second, **third}}
-        if node.op in ("add", "subtract"):
-            return _sum(first, second if node.op == "add" else _opposite(second))
-        if node.op == "negate":
-            return _opposite(first)
-        if node.op in ("multiply", "divide"):
-            if node.op == "multiply" and all(key is _one for key in first):
-                first, second = second, first
-            of = multiply if node.op == "multiply" else divide
-            if any(key is not _one for key in second):
-                return None
-            by = second.get(_one, constant(0.0))
-            return {key: of(factor, by) for key, factor in first.items()}
-        if node.op in _remainders:
-            return _sum(first, {ex.make("subtract", (node.args[0], node)): constant(-1.0)})
-        if node.op in _whole or node.op in _waves and not _waves_of(first):
-            return {node: _one}
-        return None
-
-    def _with_kink(self, node: Any) -> Any:
-        """An absolute value, a minimum or a maximum by a comparison."""
-        a, b = node.args if len(node.args) == 2 else (node.args[0], constant(0.0))
-        self._kinks.append(is_less := _is_less(node))
-        if node.op == "abs":
-            return choose(is_less, ex.make("negate", (a,)), a)
-        return choose(is_less, *((a, b) if node.op == "min" else (b, a)))
-
-
-def _is_less(node: Any) -> Any:
-    """Whether the first argument of an absolute value, a minimum or a maximum is less than the second."""
-    return compare("less", *(node.args if len(node.args) == 2 else (node.args[0], constant(0.0))))
-
-
-def _decisive(node: Any) -> Any:
-    """What decides when an operation jumps: at zero if it is a comparison, else at whole numbers."""
-    if node.op in _comparisons:
-        return ex.make("subtract", node.args)
-    return node.args[0] if len(node.args) == 1 else ex.make("divide", node.args)
-
-
-def _sum(a: Form, b: Form) -> Form:
-    made = {key: add(a.get(key, constant(0.0)), b.get(key, constant(0.0))) for key in {**a, **b}}
-    return {key: factor for key, factor in made.items() if not (is_constant(factor) and value_of(factor) == 0)}
-
-
-def _opposite(form: Form) -> Form:
-    return {key: _negative(factor) for key, factor in form.items()}
-
-
-def _negative(value: Any) -> Any:
-    return value.args[0] if value.op == "negate" else make_folded("negate", value)
-
-
-def _waves_of(form: Form | None) -> list[Any]:
-    return [key for key in form or () if key.op in _waves]

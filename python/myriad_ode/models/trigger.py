@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..base.errors import Error, at, users_line
-from ..symbolic import expression as ex, symbols as sym
-from ..symbolic.expression import symbols_of, text
+from ..symbolic import expression as ex, functions as fn, symbols as sym
+from ..symbolic.node import symbols_of, text
 from ..symbolic.folding import both, choose, compare, either, is_constant, number, opposite, subtract, value_of
 from ..symbolic.numbers import is_whole
 from .event import Event
@@ -182,7 +182,7 @@ class Sides:
                                  for value in part.args[1:])
                 return self._of(choose(part.args[0], first, second))
         if only_jumps(condition, self._is_still):  # a difference may stay zero for a while
-            return self._named(ex.where(condition, 1.0, -1.0))
+            return self._named(fn.where(condition, 1.0, -1.0))
         if condition.op in ("greater_equal", "less"):  # zero counts as positive
             above = self._named(subtract(*condition.args))
             return above if condition.op == "greater_equal" else opposite(above)
@@ -201,7 +201,7 @@ class Sides:
         there = both(self._named(function), self._named(subtract(b, a)))
         if function not in self.instants:
             self.instants[function] = sym.integer_accessory(f"{self.functions[function]}_is_zero")
-        return either(there, self._named(ex.where(self.instants[function] == 1, 1.0, -1.0)))
+        return either(there, self._named(fn.where(self.instants[function] == 1, 1.0, -1.0)))
 
     def _named(self, function: Any) -> Any:
         number = len(self.functions) - self._first + 1

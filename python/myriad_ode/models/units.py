@@ -10,7 +10,9 @@ import numpy as np
 
 from ..base.errors import Error, at, users_line
 from ..symbolic import symbols as sym
-from ..symbolic.expression import Node, Vector, as_number, integer, make, real, to_real, vector
+from ..symbolic.expression import as_number, make, to_real
+from ..symbolic.node import Node, integer, real
+from ..symbolic.vectors import Vector, vector
 from ..symbolic.numbers import as_numbers, is_whole
 from ..symbolic.table import Table
 from .event import Event, Summary, event

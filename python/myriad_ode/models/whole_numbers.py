@@ -7,10 +7,11 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from ..base.errors import Error, at
-from ..symbolic.expression import integer, is_long, text, walk
+from ..symbolic.node import integer, text, walk
+from ..symbolic.whole_and_real import is_long
 
 if TYPE_CHECKING:
-    from ..symbolic.expression import Node
+    from ..symbolic.node import Node
 
 _most_32 = 2**31 - 1
 _most_exact = 2**53  # what double precision and numbers of 64 bits both hold

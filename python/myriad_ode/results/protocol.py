@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 if TYPE_CHECKING:
     from ..models.components import Components
     from ..sweeps.sweep import Sweep
-    from ..symbolic.expression import Node
+    from ..symbolic.node import Node
     from ..symbolic.types import Array, Component
 
 

@@ -14,7 +14,7 @@ from .. import _core
 from ..base import component_kinds as kinds
 from ..base.statuses import in_words
 from ..models.components import unknown
-from ..symbolic.expression import Node
+from ..symbolic.node import Node
 from .protocol import Quantity
 
 if TYPE_CHECKING:

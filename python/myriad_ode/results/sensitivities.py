@@ -12,7 +12,7 @@ from ..base.errors import Error, renamed
 from ..base.statuses import status_names
 from ..models.sensitivities import name_of_derivative
 from ..symbolic.derivatives import derivatives
-from ..symbolic.expression import Node, symbols_of
+from ..symbolic.node import Node, symbols_of
 from ..symbolic.symbols import symbol as symbol_of, time
 
 if TYPE_CHECKING:

@@ -17,7 +17,7 @@ from ..sweeps.gpu_inputs import DeviceInput
 from ..sweeps.inputs import Along, by_name, numbers, whole, whole_numbers
 from ..sweeps.sweep import Sweep
 from ..symbolic.axes import Axis, drawn
-from ..symbolic.expression import Node
+from ..symbolic.node import Node
 
 if TYPE_CHECKING:
     import numpy.typing as npt

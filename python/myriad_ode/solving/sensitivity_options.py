@@ -13,7 +13,7 @@ from ..models.sensitivities import WithSensitivities, ends_of_domain
 from ..sweeps.inputs import real
 from ..symbolic import folding
 from ..symbolic.derivatives import derivatives
-from ..symbolic.expression import symbols_of
+from ..symbolic.node import symbols_of
 from ..symbolic.symbols import t_begin, time
 from .core_options import per_state
 

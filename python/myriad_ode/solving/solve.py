@@ -21,7 +21,8 @@ from ..models.methods import default, fixed_step, method_type
 from ..models.once_per_phase import prepared
 from ..models.sensitivities import WithSensitivities, note_on, with_sensitivities
 from ..results.no_instances import EmptyEnsemble, EmptyReport, kernel as no_kernel
-from ..results.run import Interrupted, Run
+from ..results.report import Interrupted
+from ..results.run import Run
 from ..results.sensitivities import note
 from ..sweeps.gpu_inputs import DeviceInput
 from ..sweeps.inputs import numbers

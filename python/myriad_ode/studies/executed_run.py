@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Protocol
 
 from ..base.errors import Error
-from ..results.run import Interrupted
+from ..results.report import Interrupted
 from ..solving.progress import ProgressDisplay
 from .result import StudyResult
 

@@ -16,7 +16,7 @@ from ..base.statuses import first_failure, in_words, status_names
 from ..models.components import name_of
 from ..results.quantities import names_of_symbol, of_component, times, unknown_quantity
 from ..sweeps.inputs import path_text
-from ..symbolic.expression import Node
+from ..symbolic.node import Node
 from ..symbolic.symbols import time
 from .store_slices import blocks, read_part
 

@@ -26,7 +26,7 @@ from ..models.methods import default, fixed_step, method_type
 from ..models.once_per_phase import prepared
 from ..models.sensitivities import note_on
 from ..models.whole_numbers import check_whole_numbers
-from ..results.run import Interrupted
+from ..results.report import Interrupted
 from ..solving.core_options import finish_options, longest_step, make_options, options_of, takes_options
 from ..solving.gather import full_name, gather_axes, refuse_missing, refuse_shared
 from ..solving.options import Options, StudyArguments

@@ -13,7 +13,8 @@ import numpy as np
 
 from ..base.errors import Error, at, refuse_masked, users_line
 from ..symbolic.axes import Axis, drawn
-from ..symbolic.expression import Node, is_sympy
+from ..symbolic.expression import is_sympy
+from ..symbolic.node import Node
 from ..symbolic.numbers import as_numbers
 from ..symbolic.read_text import sympy_name
 

@@ -10,7 +10,8 @@ import numpy as np
 
 from .. import _core
 from ..base.errors import Error, at, users_line
-from .expression import Node, draws
+from .functions import draws
+from .node import Node
 
 __all__ = ["linspace", "geomspace"]
 

@@ -7,16 +7,17 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from . import expression as ex
+from . import expression as ex, functions as fn
+from .node import Node, walk
 from .operations import known_of
 
 if TYPE_CHECKING:
-    from .expression import Condition, Expression, Node
+    from .expression import Condition, Expression
 
 def _times(partial: Expression | Condition | int, derivative: Expression) -> Expression:
     """A product in which a condition chooses between the derivative and zero."""
     if isinstance(partial, ex.Condition):
-        return ex.where(partial, derivative, 0.0)
+        return fn.where(partial, derivative, 0.0)
     if isinstance(partial, int):
         return derivative if partial == 1 else -derivative
     if derivative.op == "constant" and derivative.value == 1:
@@ -32,9 +33,9 @@ def _forwards(node: Node, argument: Node, partial: Expression | Condition | int,
         return derivative
     if isinstance(partial, ex.Expression) and derivative.op != "constant":
         if known_of(node.op).is_singular:  # so that it has the right derivatives in its turn
-            partial = ex.where(ex.is_finite(partial) | (derivative != 0.0), partial, 0.0)
+            partial = fn.where(fn.is_finite(partial) | (derivative != 0.0), partial, 0.0)
         elif node.op in ("exp", "exp2") and id(argument) in singular:
-            return ex.where(partial == 0.0, 0.0, partial * derivative)
+            return fn.where(partial == 0.0, 0.0, partial * derivative)
     return _times(partial, derivative)
 
 
@@ -51,7 +52,7 @@ def dependencies(roots: Sequence[Node], symbols: Sequence[Node]) -> list[list[in
     """For each root the numbers of the symbols that it depends on, in order."""
     bit = {id(s): 1 << i for i, s in enumerate(symbols)}
     masks: dict[int, int] = {}
-    for node in ex.walk(roots):
+    for node in walk(roots):
         mask = bit.get(id(node), 0)
         for argument in node.args:
             mask |= masks[id(argument)]
@@ -65,7 +66,7 @@ def derivatives(roots: Sequence[Node], symbols: Sequence[Node]) -> list[dict[int
     one = ex.constant(1.0)
     number = {id(s): i for i, s in enumerate(symbols)}
     found: dict[int, dict[int, Expression]] = {}
-    order = ex.walk(roots)
+    order = walk(roots)
     singular = _with_singular(order)
     for node in order:
         total: dict[int, Expression] = {}
@@ -95,7 +96,7 @@ def transposed(roots: Sequence[Node], weights: Sequence[Expression],
     """For each symbol the sum over the roots of a weight times the derivative by the symbol, at the cost of a few times
     the roots, however many symbols there are: reverse mode. None where `derivatives` gives None."""
     depends = {id(s) for s in symbols}
-    order = ex.walk(roots)
+    order = walk(roots)
     above_singular = _with_singular(order)
     for node in order:
         if node.type == ex.real and any(id(a) in depends for a in node.args):
@@ -137,11 +138,11 @@ def transposed(roots: Sequence[Node], weights: Sequence[Expression],
             term = _times(partial, weight)
             if isinstance(partial, ex.Condition):
                 is_conditional = True
-            elif isinstance(partial, ex.Node) and partial.op != "constant":
+            elif isinstance(partial, Node) and partial.op != "constant":
                 if is_conditional or known_of(node.op).is_singular:
-                    term = ex.where(weight == 0.0, 0.0, term)
+                    term = fn.where(weight == 0.0, 0.0, term)
                 if is_singular:
-                    term = ex.where(partial == 0.0, 0.0, term)
+                    term = fn.where(partial == 0.0, 0.0, term)
                 is_singular = is_singular or known_of(node.op).is_singular
                 is_conditional = is_conditional or node.op in ("exp", "exp2") and id(argument) in above_singular
             add(argument, term, is_conditional, is_singular)
@@ -153,7 +154,7 @@ def directional(roots: Sequence[Node], symbols: Sequence[Node],
     """The derivatives of the roots where each symbol moves by its component of a direction. None where `derivatives`
     gives None."""
     moves: dict[int, Expression] = {id(s): d for s, d in zip(symbols, direction)}
-    order = ex.walk(roots)
+    order = walk(roots)
     singular = _with_singular(order)
     for node in order:
         if node.type != ex.real or not any(id(a) in moves for a in node.args):

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from .expression import Node, real, walk
+from .node import Node, real, walk
 from .operations import operations
 
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from . import expression as ex
+from . import expression as ex, functions as fn
 from .evaluate import evaluate
 from .expression import Expression, as_node
 
@@ -167,7 +167,7 @@ def power(base: Any, exponent: Any) -> Any:
             return constant(np.power(np.float64(value_of(base)), np.float64(value_of(exponent))))
     if is_constant(exponent) and not math.isfinite(value_of(exponent)):
         return ex.make("pow", (base, exponent))
-    return as_node(ex.pow(base, exponent))
+    return as_node(fn.pow(base, exponent))
 
 
 def total(terms: list[Any]) -> Any:

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from ..base.errors import Error, at, refuse_masked, users_line
-from .expression import as_number, continuous, make, maximum, minimum, to_real
+from .expression import as_number, continuous, make, to_real
+from .functions import maximum, minimum
 from .symbols import check_name
 from .table import Table
 

@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..base.errors import Error, at, users_line
-from . import expression as ex
+from . import expression as ex, functions as fn
 from .operations import known_of
+from .vectors import elementwise, of_array_functions, of_ufuncs
 
 if TYPE_CHECKING:
     from .expression import Condition, Expression, Operand
@@ -23,7 +24,7 @@ _pi = math.pi
 
 
 def _sign(x: Expression) -> Expression:
-    return ex.where(x > 0, 1.0, ex.where(x < 0, -1.0, x))
+    return fn.where(x > 0, 1.0, fn.where(x < 0, -1.0, x))
 
 
 def _rounded(x: Operand, decimals: int = 0, out: None = None) -> Expression:
@@ -39,7 +40,7 @@ def _select(conditions: Sequence[Any], choices: Sequence[Any], default: Any = 0)
                     "one choice for each condition")
     chosen = default
     for condition, choice in reversed(list(zip(conditions, choices))):
-        chosen = ex.elementwise(ex.where, condition, choice, chosen)
+        chosen = elementwise(fn.where, condition, choice, chosen)
     return chosen
 
 
@@ -53,7 +54,7 @@ def _piecewise(x: Any, conditions: Any, functions: Iterable[Any], *arguments: An
     # the last condition that holds decides, as in NumPy
     chosen = values.pop() if len(values) > len(conditions) else 0.0
     for condition, value in zip(conditions, values):
-        chosen = ex.elementwise(ex.where, condition, value, chosen)
+        chosen = elementwise(fn.where, condition, value, chosen)
     return chosen
 
 
@@ -69,7 +70,7 @@ def _is_nan(x: object) -> Condition:
 
 
 def _is_infinite(x: Operand) -> Condition:
-    return ~(ex.is_finite(x) | _is_nan(x))
+    return ~(fn.is_finite(x) | _is_nan(x))
 
 
 def _of_nodes(operation: Callable[[Any, Any], Any]) -> Callable[[object, object], Any]:
@@ -78,20 +79,20 @@ def _of_nodes(operation: Callable[[Any, Any], Any]) -> Callable[[object, object]
 
 
 def _table() -> dict[Any, Callable[..., Any]]:
-    table = {known_of(name).value: getattr(ex, name) for name in ex.__all__
+    table = {known_of(name).value: function for name, function in fn.by_name.items()
              if isinstance(known_of(name).value, np.ufunc)}
     table.update({
-        np.ceil: ex.ceil, np.trunc: ex.trunc, np.reciprocal: ex.reciprocal,
-        np.absolute: ex.abs, np.fabs: ex.abs, np.minimum: ex.minimum, np.maximum: ex.maximum, np.fmin: ex.minimum,
-        np.fmax: ex.maximum, np.power: ex.pow, np.float_power: lambda x, y: ex.pow(ex.to_real(ex.as_number(x)), y),
-        np.square: lambda x: x * x, np.rint: ex.round, np.sign: _sign, np.isfinite: ex.is_finite, np.isnan: _is_nan,
+        np.ceil: ex.ceil, np.trunc: ex.trunc, np.reciprocal: fn.reciprocal,
+        np.absolute: ex.abs, np.fabs: ex.abs, np.minimum: fn.minimum, np.maximum: fn.maximum, np.fmin: fn.minimum,
+        np.fmax: fn.maximum, np.power: fn.pow, np.float_power: lambda x, y: fn.pow(ex.to_real(ex.as_number(x)), y),
+        np.square: lambda x: x * x, np.rint: ex.round, np.sign: _sign, np.isfinite: fn.is_finite, np.isnan: _is_nan,
         np.isinf: _is_infinite,
-        np.heaviside: lambda x, h: ex.where(x > 0, 1.0, ex.where(x < 0, 0.0, h)),
+        np.heaviside: lambda x, h: fn.where(x > 0, 1.0, fn.where(x < 0, 0.0, h)),
         np.deg2rad: lambda x: x * (_pi / 180), np.radians: lambda x: x * (_pi / 180),
         np.rad2deg: lambda x: x * (180 / _pi), np.degrees: lambda x: x * (180 / _pi),
-        np.arcsinh: _inverse_sinh, np.arccosh: lambda x: ex.log(x + ex.sqrt(x - 1) * ex.sqrt(x + 1)),
-        np.arctanh: lambda x: 0.5 * ex.log1p(2 * x / (1 - x)),
-        np.logaddexp: lambda a, b: ex.maximum(a, b) + ex.log1p(ex.exp(-abs(a - b))),
+        np.arcsinh: _inverse_sinh, np.arccosh: lambda x: fn.log(x + fn.sqrt(x - 1) * fn.sqrt(x + 1)),
+        np.arctanh: lambda x: 0.5 * fn.log1p(2 * x / (1 - x)),
+        np.logaddexp: lambda a, b: fn.maximum(a, b) + fn.log1p(fn.exp(-abs(a - b))),
         np.add: ex.add, np.subtract: ex.subtract, np.multiply: ex.multiply, np.true_divide: ex.divide,
         np.floor_divide: ex.floor_divide, np.remainder: ex.remainder, np.negative: operator.neg,
         np.positive: operator.pos, np.less: _of_nodes(operator.lt), np.less_equal: _of_nodes(operator.le),
@@ -106,27 +107,27 @@ def _table() -> dict[Any, Callable[..., Any]]:
 
 def _inverse_sinh(x: Expression) -> Expression:
     size = abs(x)
-    small = ex.log1p(size + size * size / (1 + ex.sqrt(1 + size * size)))
-    return ex.copysign(ex.where(size > 1e150, ex.log(size) + 0.6931471805599453, small), x)  # where squares overflow
+    small = fn.log1p(size + size * size / (1 + fn.sqrt(1 + size * size)))
+    return fn.copysign(fn.where(size > 1e150, fn.log(size) + 0.6931471805599453, small), x)  # where squares overflow
 
 
 def _clip(x: Any, low: Any = None, high: Any = None, out: None = None, **by_name: Any) -> Any:
     low = next((by_name[n] for n in ("a_min", "min") if n in by_name), low)
     high = next((by_name[n] for n in ("a_max", "max") if n in by_name), high)
-    x = x if low is None else ex.elementwise(ex.maximum, x, low)
-    return x if high is None else ex.elementwise(ex.minimum, x, high)
+    x = x if low is None else elementwise(fn.maximum, x, low)
+    return x if high is None else elementwise(fn.minimum, x, high)
 
 
 def _where(condition: Any, a: Any, b: Any) -> Any:
-    return ex.elementwise(ex.where, condition, a, b)
+    return elementwise(fn.where, condition, a, b)
 
 
 # Functions that NumPy hands over as they are called, with whole arrays.
 _array_functions: dict[Callable[..., Any], Callable[..., Any]] = {
     np.where: _where, np.clip: _clip, np.select: _select, np.piecewise: _piecewise, np.polyval: _polyval,
-    np.round: lambda x, decimals=0, out=None: ex.elementwise(lambda a: _rounded(a, decimals), x),
-    np.fix: lambda x, out=None: ex.elementwise(ex.trunc, x),
-    np.sinc: lambda x: ex.elementwise(lambda a: ex.where(ex.as_number(a) == 0, 1.0, ex.sinpi(a) / (_pi * a)), x),
+    np.round: lambda x, decimals=0, out=None: elementwise(lambda a: _rounded(a, decimals), x),
+    np.fix: lambda x, out=None: elementwise(ex.trunc, x),
+    np.sinc: lambda x: elementwise(lambda a: fn.where(ex.as_number(a) == 0, 1.0, fn.sinpi(a) / (_pi * a)), x),
 }
 _array_functions[np.around] = _array_functions[np.round]
 _of_numbers = _table()
@@ -151,11 +152,11 @@ def _add_numpys_methods() -> None:
     for function, ours in _of_numbers.items():
         if function.nin == 1 and function.__name__ not in ("absolute", "negative", "positive", "invert"):
             setattr(ex.Expression, function.__name__, lambda self, ours=ours: ours(self))
-    for name, ours in (("arctan2", ex.atan2), ("hypot", ex.hypot), ("copysign", ex.copysign), ("fmod", ex.fmod)):
+    for name, ours in (("arctan2", fn.atan2), ("hypot", fn.hypot), ("copysign", fn.copysign), ("fmod", fn.fmod)):
         setattr(ex.Expression, name, lambda self, other, ours=ours: ours(self, other))
 
 
 _add_numpys_methods()
-ex.of_ufuncs.update(_of_numbers)
-ex.of_array_functions.update({function: functools.partial(_checked, function, ours)
-                              for function, ours in _array_functions.items()})
+of_ufuncs.update(_of_numbers)
+of_array_functions.update({function: functools.partial(_checked, function, ours)
+                           for function, ours in _array_functions.items()})

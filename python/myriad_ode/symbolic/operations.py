@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The table of operations: of each its value by NumPy, its derivatives, what it costs, and what to call its result. A
-function that is added to expression.py has its row here."""
+function that is added to functions.py has its row here."""
 
 from __future__ import annotations
 
@@ -11,10 +11,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from . import expression as ex
+from . import expression as ex, functions as fn
+from .node import walk
 
 if TYPE_CHECKING:
-    from .expression import Expression, Node, Operand
+    from .expression import Expression, Operand
+    from .node import Node
 
 
 class Operation(NamedTuple):
@@ -46,7 +48,7 @@ def _cospi(x: Any) -> Any:
 
 def _quotient(a: Expression, by: Expression) -> Expression:
     """a / by; zero where both are."""
-    return ex.where(by == 0.0, 0.0, a / by)
+    return fn.where(by == 0.0, 0.0, a / by)
 
 
 def _of_power(f: Expression, base: Expression, exponent: Expression,
@@ -54,7 +56,7 @@ def _of_power(f: Expression, base: Expression, exponent: Expression,
     slope = exponent * power(base, exponent - 1)
     if exponent.op == "constant":
         return slope, None
-    return ex.where(exponent == 0.0, 0.0, slope), ex.where(f == 0.0, 0.0, f * ex.log(base))
+    return fn.where(exponent == 0.0, 0.0, slope), fn.where(f == 0.0, 0.0, f * fn.log(base))
 
 
 def _of_product(f: Expression, *_: Expression) -> list[Any]:
@@ -74,27 +76,27 @@ operations: dict[str, Operation] = {
     "rsqrt": Operation(lambda x: 1.0 / np.sqrt(x), lambda f, a: (-0.5 * (f * f * f),), 8, "inverse_root"),
     "sqrt": Operation(np.sqrt, lambda f, a: (0.5 / f,), 8, "root", True),
     "cbrt": Operation(np.cbrt, lambda f, a: (1 / (3 * f * f),), 15, is_singular=True),
-    "abs": Operation(np.abs, lambda f, a: (ex.copysign(1.0, a),), result="size"),
+    "abs": Operation(np.abs, lambda f, a: (fn.copysign(1.0, a),), result="size"),
     "floor": Operation(np.floor, lambda f, a: (None,)),
     "rint": Operation(np.rint, lambda f, a: (None,)),
-    "sin": Operation(np.sin, lambda f, a: (ex.cos(a),), 15, "sine"),
-    "cos": Operation(np.cos, lambda f, a: (-ex.sin(a),), 15, "cosine"),
-    "sinpi": Operation(_sinpi, lambda f, a: (ex.pi * ex.cospi(a),), 15),
-    "cospi": Operation(_cospi, lambda f, a: (-ex.pi * ex.sinpi(a),), 15),
-    "sincos.sine": Operation(np.sin, lambda f, a: (ex.sincos(a)[1],), 10),
-    "sincos.cosine": Operation(np.cos, lambda f, a: (-ex.sincos(a)[0],), 10),
-    "sincospi.sine": Operation(_sinpi, lambda f, a: (ex.pi * ex.sincospi(a)[1],), 10),
-    "sincospi.cosine": Operation(_cospi, lambda f, a: (-ex.pi * ex.sincospi(a)[0],), 10),
+    "sin": Operation(np.sin, lambda f, a: (fn.cos(a),), 15, "sine"),
+    "cos": Operation(np.cos, lambda f, a: (-fn.sin(a),), 15, "cosine"),
+    "sinpi": Operation(_sinpi, lambda f, a: (fn.pi * fn.cospi(a),), 15),
+    "cospi": Operation(_cospi, lambda f, a: (-fn.pi * fn.sinpi(a),), 15),
+    "sincos.sine": Operation(np.sin, lambda f, a: (fn.sincos(a)[1],), 10),
+    "sincos.cosine": Operation(np.cos, lambda f, a: (-fn.sincos(a)[0],), 10),
+    "sincospi.sine": Operation(_sinpi, lambda f, a: (fn.pi * fn.sincospi(a)[1],), 10),
+    "sincospi.cosine": Operation(_cospi, lambda f, a: (-fn.pi * fn.sincospi(a)[0],), 10),
     "tan": Operation(np.tan, lambda f, a: (1 + f * f,), 25),
-    "asin": Operation(np.arcsin, lambda f, a: (1 / ex.sqrt(1 - a * a),), 15, is_singular=True),
-    "acos": Operation(np.arccos, lambda f, a: (-1 / ex.sqrt(1 - a * a),), 15, is_singular=True),
+    "asin": Operation(np.arcsin, lambda f, a: (1 / fn.sqrt(1 - a * a),), 15, is_singular=True),
+    "acos": Operation(np.arccos, lambda f, a: (-1 / fn.sqrt(1 - a * a),), 15, is_singular=True),
     "atan": Operation(np.arctan, lambda f, a: (1 / (1 + a * a),), 15),
-    "sinh": Operation(np.sinh, lambda f, a: (ex.cosh(a),), 15),
-    "cosh": Operation(np.cosh, lambda f, a: (ex.sinh(a),), 15),
+    "sinh": Operation(np.sinh, lambda f, a: (fn.cosh(a),), 15),
+    "cosh": Operation(np.cosh, lambda f, a: (fn.sinh(a),), 15),
     "tanh": Operation(np.tanh, lambda f, a: (1 - f * f,), 15),
     "exp": Operation(np.exp, lambda f, a: (f,), 15, "exponential"),
     "exp2": Operation(np.exp2, lambda f, a: (_ln2 * f,), 15),
-    "expm1": Operation(np.expm1, lambda f, a: (ex.exp(a),), 15),
+    "expm1": Operation(np.expm1, lambda f, a: (fn.exp(a),), 15),
     "log": Operation(np.log, lambda f, a: (1 / a,), 15, "logarithm", is_singular=True),
     "log1p": Operation(np.log1p, lambda f, a: (1 / (1 + a),), 15, is_singular=True),
     "log2": Operation(np.log2, lambda f, a: (1 / (_ln2 * a),), 15, is_singular=True),
@@ -107,12 +109,12 @@ operations: dict[str, Operation] = {
     "floor_divide": Operation(np.floor_divide, lambda f, a, b: (None, None), 20),
     "quotient": Operation(np.floor_divide),
     "remainder": Operation(np.mod),
-    "copysign": Operation(np.copysign, lambda f, a, b: (ex.copysign(1.0, a) * ex.copysign(1.0, b), None)),
+    "copysign": Operation(np.copysign, lambda f, a, b: (fn.copysign(1.0, a) * fn.copysign(1.0, b), None)),
     "select": Operation(np.where, lambda f, chosen, a, b: (None, chosen, ~chosen), result="chosen"),
     "min": Operation(np.fmin, lambda f, a, b: (a < b, ~(a < b)), result="least"),
     "max": Operation(np.fmax, lambda f, a, b: (a > b, ~(a > b)), result="largest"),
-    "pow": Operation(np.power, lambda f, a, b: _of_power(f, a, b, ex.pow), 40, "power", True),
-    "powr": Operation(np.power, lambda f, a, b: _of_power(f, a, b, ex.powr), 40, "power", True),
+    "pow": Operation(np.power, lambda f, a, b: _of_power(f, a, b, fn.pow), 40, "power", True),
+    "powr": Operation(np.power, lambda f, a, b: _of_power(f, a, b, fn.powr), 40, "power", True),
     "dot": Operation(None, _of_product),
     "find_interval": Operation(None, lambda f, *_: (None,), 20),
     "less": Operation(operator.lt), "less_equal": Operation(operator.le), "greater": Operation(operator.gt),
@@ -130,4 +132,4 @@ def known_of(op: str) -> Operation:
 
 def cost(roots: Iterable[Node]) -> int:
     """About how many instructions compute some expressions."""
-    return sum(2 * len(n.args) if n.op == "dot" else known_of(n.op).instructions for n in ex.walk(roots) if n.args)
+    return sum(2 * len(n.args) if n.op == "dot" else known_of(n.op).instructions for n in walk(roots) if n.args)

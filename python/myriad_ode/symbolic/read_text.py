@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from typing import Any, NoReturn
 
 from ..base.errors import Error, at, users_line
-from . import expression as ex
+from . import expression as ex, functions as fn
 from .symbols import symbol
 
 _binary = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
@@ -19,8 +19,8 @@ _binary = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul,
            ast.BitOr: operator.or_}
 _compare = {ast.Lt: operator.lt, ast.LtE: operator.le, ast.Gt: operator.gt, ast.GtE: operator.ge, ast.Eq: operator.eq,
             ast.NotEq: operator.ne}
-functions = {name: getattr(ex, name) for name in ex.__all__ if name not in ("sincos", "sincospi", "pi")}
-functions.update(min=ex.minimum, max=ex.maximum, ln=ex.log)
+functions = {name: function for name, function in fn.by_name.items() if name not in ("sincos", "sincospi")}
+functions.update(min=fn.minimum, max=fn.maximum, ln=fn.log)
 
 
 def _shown(source: str) -> str:
@@ -77,7 +77,7 @@ class _Reader:
             join = operator.and_ if isinstance(tree.op, ast.And) else operator.or_
             return functools.reduce(join, (ex.as_condition(self.read(t)) for t in tree.values))
         if isinstance(tree, ast.IfExp):
-            return ex.where(self.read(tree.test), self.read(tree.body), self.read(tree.orelse))
+            return fn.where(self.read(tree.test), self.read(tree.body), self.read(tree.orelse))
         if isinstance(tree, ast.Call) and isinstance(tree.func, ast.Name) and not tree.keywords:
             function = functions.get(tree.func.id)
             if function is None:
@@ -93,7 +93,7 @@ class _Reader:
         if tree.id in self.names:
             return self.names[tree.id]
         if tree.id == "pi":
-            return ex.constant(ex.pi)
+            return ex.constant(fn.pi)
         if tree.id in ("True", "False"):
             return ex.constant(tree.id == "True")
         raise Error(f"{self.what}: '{tree.id}' is unknown: name it in parameters=\"...\" or shared=\"...\"")
@@ -197,7 +197,7 @@ class _SympyReader:
         if name is None:
             raise Error(f"{self.what}: `{e}` has no counterpart in myriad: rewrite it with its functions, as by "
                         "expression.rewrite(...)")
-        return getattr(ex, name)(*map(self.read, e.args))
+        return fn.by_name[name](*map(self.read, e.args))
 
     def _symbol(self, name: str) -> Any:
         if name not in self.names:
@@ -242,7 +242,7 @@ class _SympyReader:
 
     def _power(self, e: Any) -> Any:
         if e.exp == self.sympy.Rational(1, 2):
-            return ex.sqrt(self.read(e.base))
+            return fn.sqrt(self.read(e.base))
         return self.read(e.base) ** self.read(e.exp)
 
     def _pieces(self, e: Any) -> Any:
@@ -252,9 +252,9 @@ class _SympyReader:
                         "(value, True)")
         chosen = self.read(value)
         for value, condition in reversed(e.args[:-1]):
-            chosen = ex.where(self.read(condition), self.read(value), chosen)
+            chosen = fn.where(self.read(condition), self.read(value), chosen)
         return chosen
 
     def _step(self, e: Any) -> Any:
         x = self.read(e.args[0])
-        return ex.where(x > 0, 1.0, ex.where(x < 0, 0.0, self.read(e.args[1])))
+        return fn.where(x > 0, 1.0, fn.where(x < 0, 0.0, self.read(e.args[1])))

@@ -7,11 +7,12 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from . import expression as ex
-from .expression import walk
+from .node import walk
 from .folding import constant
 
 if TYPE_CHECKING:
-    from .expression import Expression, Node
+    from .expression import Expression
+    from .node import Node
 
 
 def rebuilt(roots: list[Expression], changed: Callable[[Node], Any],

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from ..base import component_kinds as kinds
 from ..base.errors import Error, at, users_line
-from .expression import integer, make, real
+from .expression import make
+from .node import integer, real
 
 if TYPE_CHECKING:
     from .expression import Expression

@@ -17,7 +17,8 @@ from .symbols import check_name
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-    from .expression import Expression, Node
+    from .expression import Expression
+    from .node import Node
 
 __all__ = ["table"]
 

@@ -10,7 +10,8 @@ from typing import Any, Literal, Union
 import numpy as np
 import numpy.typing as npt
 
-from .expression import Expression, Node
+from .expression import Expression
+from .node import Node
 
 # A component: a symbol, as from `my.states`, or its name. Those of SymPy will do, and a mapping with keys of one
 # kind is none with keys of several, so that it may be anything for a type checker.

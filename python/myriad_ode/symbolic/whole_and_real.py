@@ -6,10 +6,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from .expression import condition, integer, real, walk
+from .node import condition, integer, real, walk
 
 if TYPE_CHECKING:
-    from .expression import Node
+    from .node import Node
 
 
 def converts(node: Node, argument: Node) -> bool:
@@ -22,6 +22,11 @@ def is_plain(node: Node) -> bool:
     """Whether an expression is one number for all instances, so that packs do not come into it."""
     return all(n.value[0] in ("shared", "shared_integer") if n.op == "symbol" else n.op != "select" or n.type == real
                for n in walk([node]))
+
+
+def is_long(node: Node) -> bool:
+    """Whether a whole number has 64 bits, as the number of the instance has; others have 32."""
+    return any(n.value == ("built-in", "instance") for n in walk([node]) if n.op == "symbol")
 
 
 def generic_problem(roots: Iterable[Node]) -> Node | None:

@@ -47,21 +47,16 @@ public:
         arguments all = host;
         const auto arrays = [&](auto&& add) { for_each_array(all, add); };
         const auto records = [&](auto&& add) { for_each_record(all, add); };
-        std::size_t per_instance = scheduler_.bytes_per_instance();
+        std::size_t per_instance = scheduler_.bytes_per_instance(), to_stage = 0;
         const auto add = [&](auto* array, std::int64_t components, array_access, array_kind) {
             per_instance += bytes_of(array, components);
+            if (!is_pinned(array)) to_stage += bytes_of(array, components * count);
         };
         arrays(add);
         records(add);
         grow(memory_, bytes_for(count, arrays), per_instance);
         grow(records_, bytes_for(count, records), per_instance);
         scheduler_.reserve(count, host.phases, launcher_);
-        std::size_t to_stage = 0;
-        const auto stage = [&](auto* array, std::int64_t components, array_access, array_kind) {
-            if (!is_pinned(array)) to_stage += bytes_of(array, components * count);
-        };
-        arrays(stage);
-        records(stage);
         if (to_stage > little_transfer::most && !has_staged_) {
             // Created now, as that waits for all work on the device: one for an upload, one for a download, one on
             // request.

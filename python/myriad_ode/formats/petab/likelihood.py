@@ -16,7 +16,7 @@ from ...inference.objective import Free, Objective
 from ...models.components import Components
 from ...symbolic.derivatives import derivatives
 from ...symbolic.evaluate import evaluate
-from ...symbolic.expression import Node, symbols_of
+from ...symbolic.node import Node, symbols_of
 from ...symbolic.symbols import time
 from ..sbml.model import SbmlModel
 from .priors import Prior, scaled_by

@@ -13,7 +13,7 @@ from typing import Any
 
 from ...models.trigger import Trigger, waiting_value
 from ...symbolic import expression as ex
-from ...symbolic.expression import symbols_of
+from ...symbolic.node import symbols_of
 from ...symbolic.folding import divide, is_constant, multiply, number, truth, value_of
 from .document import named
 from .math import Refused

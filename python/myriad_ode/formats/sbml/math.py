@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ...base.errors import Error
-from ...symbolic import expression as ex
+from ...symbolic import expression as ex, functions as fn
 from ...symbolic.folding import (add, apply, both, choose, compare, constant, divide, either, folded, is_constant,
                                  make_folded, multiply, nan, number, opposite, power, subtract, truth, value_of)
 from ...symbolic.numpy_functions import of_numbers
@@ -40,18 +40,18 @@ def _of_reciprocal(function: Callable[..., Any]) -> Callable[..., Any]:
 
 _arsinh, _arcosh, _artanh = map(_numpys, ("arcsinh", "arccosh", "arctanh"))
 _functions: dict[str, Callable[..., Any]] = {
-    "FUNCTION_ABS": ex.abs, "FUNCTION_EXP": ex.exp, "FUNCTION_LN": ex.log, "FUNCTION_FLOOR": ex.floor,
-    "FUNCTION_CEILING": ex.ceil, "FUNCTION_SIN": ex.sin, "FUNCTION_COS": ex.cos, "FUNCTION_TAN": ex.tan,
-    "FUNCTION_SINH": ex.sinh, "FUNCTION_COSH": ex.cosh, "FUNCTION_TANH": ex.tanh, "FUNCTION_ARCSIN": ex.asin,
-    "FUNCTION_ARCCOS": ex.acos, "FUNCTION_ARCTAN": ex.atan, "FUNCTION_ARCSINH": _arsinh, "FUNCTION_ARCCOSH": _arcosh,
+    "FUNCTION_ABS": ex.abs, "FUNCTION_EXP": fn.exp, "FUNCTION_LN": fn.log, "FUNCTION_FLOOR": ex.floor,
+    "FUNCTION_CEILING": ex.ceil, "FUNCTION_SIN": fn.sin, "FUNCTION_COS": fn.cos, "FUNCTION_TAN": fn.tan,
+    "FUNCTION_SINH": fn.sinh, "FUNCTION_COSH": fn.cosh, "FUNCTION_TANH": fn.tanh, "FUNCTION_ARCSIN": fn.asin,
+    "FUNCTION_ARCCOS": fn.acos, "FUNCTION_ARCTAN": fn.atan, "FUNCTION_ARCSINH": _arsinh, "FUNCTION_ARCCOSH": _arcosh,
     "FUNCTION_ARCTANH": _artanh,
-    "FUNCTION_SEC": lambda x: 1.0 / ex.cos(x), "FUNCTION_CSC": lambda x: 1.0 / ex.sin(x),
-    "FUNCTION_COT": lambda x: 1.0 / ex.tan(x), "FUNCTION_SECH": lambda x: 1.0 / ex.cosh(x),
-    "FUNCTION_CSCH": lambda x: 1.0 / ex.sinh(x), "FUNCTION_COTH": lambda x: 1.0 / ex.tanh(x),
-    "FUNCTION_ARCSEC": _of_reciprocal(ex.acos), "FUNCTION_ARCCSC": _of_reciprocal(ex.asin),
-    "FUNCTION_ARCCOT": _of_reciprocal(ex.atan), "FUNCTION_ARCSECH": _of_reciprocal(_arcosh),
+    "FUNCTION_SEC": lambda x: 1.0 / fn.cos(x), "FUNCTION_CSC": lambda x: 1.0 / fn.sin(x),
+    "FUNCTION_COT": lambda x: 1.0 / fn.tan(x), "FUNCTION_SECH": lambda x: 1.0 / fn.cosh(x),
+    "FUNCTION_CSCH": lambda x: 1.0 / fn.sinh(x), "FUNCTION_COTH": lambda x: 1.0 / fn.tanh(x),
+    "FUNCTION_ARCSEC": _of_reciprocal(fn.acos), "FUNCTION_ARCCSC": _of_reciprocal(fn.asin),
+    "FUNCTION_ARCCOT": _of_reciprocal(fn.atan), "FUNCTION_ARCSECH": _of_reciprocal(_arcosh),
     "FUNCTION_ARCCSCH": _of_reciprocal(_arsinh), "FUNCTION_ARCCOTH": _of_reciprocal(_artanh),
-    "FUNCTION_REM": ex.fmod, "FUNCTION_QUOTIENT": lambda a, b: ex.round((a - ex.fmod(a, b)) / b),
+    "FUNCTION_REM": fn.fmod, "FUNCTION_QUOTIENT": lambda a, b: ex.round((a - fn.fmod(a, b)) / b),
 }
 _comparisons = {"RELATIONAL_EQ": "equal", "RELATIONAL_NEQ": "not_equal", "RELATIONAL_LT": "less",
                 "RELATIONAL_LEQ": "less_equal", "RELATIONAL_GT": "greater", "RELATIONAL_GEQ": "greater_equal"}
@@ -65,16 +65,16 @@ def _root(degree: Any, x: Any) -> Any:
         return power(x, divide(constant(1.0), degree))
     n = value_of(degree)
     if n == 2:
-        return apply(ex.sqrt, x)
+        return apply(fn.sqrt, x)
     if n % 2 == 1:  # odd roots are defined for all numbers
-        return apply(ex.cbrt, x) if n == 3 else apply(lambda y: ex.copysign(ex.pow(ex.abs(y), 1.0 / n), y), x)
+        return apply(fn.cbrt, x) if n == 3 else apply(lambda y: fn.copysign(fn.pow(ex.abs(y), 1.0 / n), y), x)
     return power(x, constant(1.0 / n if n else math.inf))
 
 
 def _log(base: Any, x: Any) -> Any:
     if is_constant(base) and value_of(base) in (2, 10):
-        return apply(ex.log2 if value_of(base) == 2 else ex.log10, x)
-    return divide(apply(ex.log, x), apply(ex.log, base))
+        return apply(fn.log2 if value_of(base) == 2 else fn.log10, x)
+    return divide(apply(fn.log, x), apply(fn.log, base))
 
 
 class Functions:

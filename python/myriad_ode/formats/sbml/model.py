@@ -11,7 +11,7 @@ from ...base.errors import Error, users_line
 from ...codegen.model import Model
 from ...models.components import Components, name_of, unknown
 from ...symbolic import symbols as sym
-from ...symbolic.expression import Node, symbols_of
+from ...symbolic.node import Node, symbols_of
 from ...symbolic.folding import constant, is_constant, value_of
 from ..deep_stack import deeply
 from .document import library, read

@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Mapping
 from typing import Any, NoReturn
 
-from ...symbolic import expression as ex
+from ...symbolic import expression as ex, functions as fn
 from ...symbolic.folding import (add, apply, both, choose, compare, constant, divide, either, is_constant, make_folded,
                                  multiply, number, opposite, power, subtract, total, truth, value_of)
 
@@ -23,7 +23,7 @@ _comparisons = {">": "greater", "<": "less", "==": "equal", ">=": "greater_equal
 
 
 def _modulo(x: Any, y: Any) -> Any:
-    rest = apply(ex.fmod, x, y)
+    rest = apply(fn.fmod, x, y)
     return choose(compare("less", rest, constant(0.0)), add(rest, y), rest)
 
 
@@ -37,10 +37,10 @@ def _applied(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 _functions: dict[str, tuple[int, Callable[..., Any]]] = {
-    **{name: (1, _applied(getattr(ex, name))) for name in (
+    **{name: (1, _applied(fn.by_name[name])) for name in (
         "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "abs", "exp", "log", "log10", "sqrt",
         "ceil")},
-    "ln": (1, _applied(ex.log)), "flr": (1, _applied(ex.floor)), "atan2": (2, _applied(ex.atan2)),
+    "ln": (1, _applied(fn.log)), "flr": (1, _applied(ex.floor)), "atan2": (2, _applied(fn.atan2)),
     "max": (2, lambda x, y: make_folded("max", x, y)), "min": (2, lambda x, y: make_folded("min", x, y)),
     "mod": (2, _modulo), "sign": (1, _sign), "not": (1, lambda x: opposite(truth(x))),
     "heav": (1, lambda x: choose(compare("less", x, constant(0.0)), constant(0.0), constant(1.0))),

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: MIT
+// Reductions to one number: extrema, means, sums.
+#include "myriad/study/plan/reduction.hpp"
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+#include "myriad/host/core/error.hpp"
+#include "myriad/kernel/study/reduced_values.hpp"
+#include "myriad/study/plan/exact_sum.hpp"
+#include "reduced_values.hpp"
+
+namespace myriad {
+
+const chunk_columns::column& chunk_columns::find(std::string_view name) const {
+    std::string all;
+    for (const column& c : columns_) {
+        if (c.what->name == name) return c;
+        all += (all.empty() ? "" : ", ") + c.what->name;
+    }
+    throw error(message("no variable \"", name, "\" is computed; there are ", all));
+}
+
+namespace {
+
+using studies::exact_sum;
+
+class extremum_state final : public reduction_state {
+public:
+    /// `sign`: 1 for the largest value, -1 for the smallest.
+    extremum_state(std::string of, std::int64_t size, double sign)
+        : of_(std::move(of)), sign_(sign), most_(static_cast<std::size_t>(size), none) {}
+
+    void add(const chunk_columns& chunk) override {
+        for_each_value(chunk, of_, [this](std::size_t j, double value) {
+            if (std::isfinite(value)) add(j, sign_ * value);
+        });
+    }
+    void add(std::span<const double> partial) override {
+        for (std::size_t j = 0; j < most_.size(); ++j) add(j, partial[j]);
+    }
+    void add_words(std::span<const std::int64_t> words) override {
+        for (std::size_t j = 0; j < most_.size(); ++j)
+            if (words[j] != 0) add(j, detail::number_of_ordered(static_cast<std::uint64_t>(words[j])));
+    }
+    std::vector<double> partial() override { return most_; }
+    std::vector<std::vector<double>> results() override {
+        std::vector<double> found(most_);
+        for (double& value : found) value = value == none ? std::numeric_limits<double>::quiet_NaN() : sign_ * value;
+        return {found};
+    }
+
+private:
+    /// Of zeros too, the order of the values must not decide.
+    void add(std::size_t j, double value) {
+        if (detail::ordered(value) > detail::ordered(most_[j])) most_[j] = value;
+    }
+
+    static constexpr double none = -std::numeric_limits<double>::infinity();
+    std::string of_;
+    double sign_;
+    std::vector<double> most_;
+};
+
+/// Sums of several numbers, each exact.
+class sums {
+public:
+    static constexpr std::size_t stored = exact_sum::digits;
+
+    explicit sums(std::int64_t size) : sum_(static_cast<std::size_t>(size)) {}
+    std::size_t size() const { return sum_.size(); }
+    exact_sum& operator[](std::size_t j) { return sum_[j]; }
+    void add(std::span<const double> partial) {
+        std::int64_t digits[stored];
+        for (std::size_t j = 0; j < size(); ++j) {
+            for (std::size_t i = 0; i < stored; ++i) digits[i] = static_cast<std::int64_t>(partial[j * stored + i]);
+            sum_[j].add(digits);
+        }
+    }
+    /// As doubles, which have the digits of 32 bits exactly.
+    void store(std::vector<double>& to) {
+        std::int64_t digits[stored];
+        for (exact_sum& s : sum_) {
+            s.store(digits);
+            to.insert(to.end(), std::begin(digits), std::end(digits));
+        }
+    }
+
+private:
+    std::vector<exact_sum> sum_;
+};
+
+class mean_state final : public reduction_state {
+public:
+    mean_state(std::string of, std::int64_t size)
+        : of_(std::move(of)), sum_(size), count_(static_cast<std::size_t>(size)) {}
+
+    void add(const chunk_columns& chunk) override {
+        for_each_value(chunk, of_, [this](std::size_t j, double value) {
+            if (!std::isfinite(value)) return;
+            sum_[j].add(value);
+            ++count_[j];
+        });
+    }
+    void add(std::span<const double> partial) override {
+        sum_.add(partial);
+        const auto counts = partial.last(count_.size());
+        for (std::size_t j = 0; j < count_.size(); ++j) count_[j] += counts[j];
+    }
+    void add_words(std::span<const std::int64_t> words) override {
+        for (std::size_t j = 0; j < count_.size(); ++j) {
+            const auto of_sum = words.subspan(j * (sums::stored + 1), sums::stored + 1);
+            sum_[j].add(of_sum.first<sums::stored>());
+            count_[j] += static_cast<double>(of_sum.back());
+        }
+    }
+    std::vector<double> partial() override {
+        std::vector<double> all;
+        sum_.store(all);
+        all.insert(all.end(), count_.begin(), count_.end());
+        return all;
+    }
+    std::vector<std::vector<double>> results() override {
+        std::vector<double> mean(count_.size());
+        for (std::size_t j = 0; j < mean.size(); ++j) {
+            mean[j] = sum_[j].value() / count_[j];
+            // The sum may be too large for a double, and the mean is not: a count has less than 64 bits.
+            if (std::isinf(mean[j])) mean[j] = std::ldexp(sum_[j].value(-64) / count_[j], 64);
+        }
+        return {mean};
+    }
+
+private:
+    std::string of_;
+    sums sum_;
+    std::vector<double> count_;
+};
+
+using user_function = std::function<void(const chunk_columns&, std::span<double>)>;
+
+class user_state final : public reduction_state {
+public:
+    user_state(user_function function, std::int64_t size) : function_(std::move(function)), sum_(size) {}
+
+    void add(const chunk_columns& chunk) override {
+        std::vector<double> of_chunk(sum_.size());
+        function_(chunk, of_chunk);
+        for (std::size_t j = 0; j < of_chunk.size(); ++j) {
+            require(std::isfinite(of_chunk[j]), "a reduction's function gave ", of_chunk[j], " for instances ",
+                    chunk.first(), " to ", chunk.first() + chunk.size() - 1, ": it has to leave such values out");
+            sum_[j].add(of_chunk[j]);
+        }
+    }
+    void add(std::span<const double> partial) override { sum_.add(partial); }
+    std::vector<double> partial() override {
+        std::vector<double> all;
+        sum_.store(all);
+        return all;
+    }
+    std::vector<std::vector<double>> results() override {
+        std::vector<double> values;
+        for (std::size_t j = 0; j < sum_.size(); ++j) values.push_back(sum_[j].value());
+        return {values};
+    }
+
+private:
+    user_function function_;
+    sums sum_;
+};
+
+/// A reduction with one result that has the inner dimensions of what it reduces.
+template <class State, class... More>
+ensemble_reduction one_value(std::string_view of, const char* what, std::int64_t partial_values,
+                             detail::reduction_kind on_device, More... more) {
+    studies::reduction_definition made;
+    made.name = message(of, '_', what);
+    made.inputs = {std::string(of)};
+    made.description = message(what, " of ", of);
+    made.plan = [=, name = made.name, description = made.description, of = std::string(of)](const inputs& in) {
+        const std::int64_t size = in[0]->values_per_item();
+        return reduction_plan{size * partial_values,
+                              {result(name, element::f64, in[0]->inner, {{"long_name", description}})},
+                              {},
+                              [=] { return std::make_unique<State>(of, size, more...); },
+                              cuda::device_reduction{on_device}};
+    };
+    return ensemble_reduction(std::move(made));
+}
+
+}  // namespace
+
+ensemble_reduction minimum_of(std::string_view of) {
+    return one_value<extremum_state>(of, "minimum", 1, detail::reduction_kind::minimum, -1.0);
+}
+ensemble_reduction maximum_of(std::string_view of) {
+    return one_value<extremum_state>(of, "maximum", 1, detail::reduction_kind::maximum, 1.0);
+}
+ensemble_reduction mean_of(std::string_view of) {
+    return one_value<mean_state>(of, "mean", exact_sum::digits + 1, detail::reduction_kind::sum);
+}
+
+ensemble_reduction sum_of(std::string name, std::vector<std::string> of, std::int64_t size, user_function function) {
+    require(!name.empty(), "a reduction needs a name");
+    require(size > 0, "the reduction ", name, " has ", size, " sums (must be positive)");
+    require(function != nullptr, "the reduction ", name, " has no function");
+    studies::reduction_definition made;
+    made.name = name;
+    made.inputs = std::move(of);
+    made.description = message("sum of a function of ", made.inputs.size(), " variables, ", size, " numbers");
+    made.plan = [name, size, function = std::move(function)](const inputs&) {
+        std::vector<studies::dimension> inner;
+        if (size > 1) inner.push_back({name + "_number", size});
+        return reduction_plan{
+            size * exact_sum::digits, {result(name, element::f64, inner, {{"long_name", "sum of " + name}})}, {}, [=] {
+                return std::make_unique<user_state>(function, size);
+            }};
+    };
+    return ensemble_reduction(std::move(made));
+}
+
+}  // namespace myriad
