@@ -98,7 +98,7 @@ function(myriad_require_exact_cuda target)
         string(APPEND flags " ${CMAKE_CUDA_FLAGS_${config}}")
     endforeach()
     get_target_property(options ${target} COMPILE_OPTIONS)
-    if("${flags} ${options}" MATCHES "(^|[ ;:-])(-?use_fast_math|-?ftz=true|-?prec-div=false|-?prec-sqrt=false)")
+    if("${flags} ${options}" MATCHES "(^|[ ;:-])(-?use_fast_math|-?ftz=true|-?prec-sqrt=false)")
         message(FATAL_ERROR
                 "myriad_add_models(${target} ...): nvcc is given ${CMAKE_MATCH_2}, with which single precision loses "
                             "the accuracy that step-size control and the mathematical functions rely on: remove "
@@ -115,15 +115,17 @@ function(myriad_twin_name result file)
     set(${result} "${stem}_${unique}" PARENT_SCOPE)
 endfunction()
 
-# myriad_add_models(<target> [CPU_ONLY] <file>...) adds model files, those with MYRIAD_INSTANTIATE, to a target of the
-# same directory: a program, an OBJECT library or a SHARED one. Such a file includes no Eigen. With a list of
-# instruction sets in MYRIAD_ARCH it is compiled once for each, and may then define nothing but the kernels; of
+# myriad_add_models(<target> [CPU_ONLY] [EXACT_FLOAT] <file>...) adds model files, those with MYRIAD_INSTANTIATE, to a
+# target of the same directory: a program, an OBJECT library or a SHARED one. Such a file includes no Eigen. With a list
+# of instruction sets in MYRIAD_ARCH it is compiled once for each, and may then define nothing but the kernels; of
 # x86-64-v2, -v3 and -v4 each at most once, since kernels are distinguished only by SSE2, AVX2 and AVX-512, and two of
 # the same would clash. Optimisation is required to inline the standard library's inline functions, of which the linker
 # would otherwise keep one copy for all instruction sets. Links myriad::openmp and, if the CUDA backend is on, compiles
-# each file for GPUs too, unless CPU_ONLY is given, and links myriad::cuda.
+# each file for GPUs too, unless CPU_ONLY is given, and links myriad::cuda; there, functions and quotients in single
+# precision are the fast ones of docs/numerics.md, or with EXACT_FLOAT CUDA's own.
 function(myriad_add_models target)
-    cmake_parse_arguments(PARSE_ARGV 1 arg "CPU_ONLY" "" "")
+    cmake_parse_arguments(PARSE_ARGV 1 arg "CPU_ONLY;EXACT_FLOAT" "" "")
+    include("${CMAKE_CURRENT_FUNCTION_LIST_DIR}/MyriadKernelFlags.cmake")
     if(NOT TARGET ${target})
         message(FATAL_ERROR "myriad_add_models(${target} ...): there is no target ${target}; "
                             "call add_executable or add_library first")
@@ -181,6 +183,13 @@ function(myriad_add_models target)
             # last.
             set_property(SOURCE "${twin}" TARGET_DIRECTORY ${target} PROPERTY COMPILE_OPTIONS
                          "$<$<NOT:$<CONFIG:Debug>>:-Xcompiler=-O3>")
+            if(arg_EXACT_FLOAT)
+                set_property(SOURCE "${twin}" TARGET_DIRECTORY ${target} APPEND PROPERTY COMPILE_DEFINITIONS
+                             MYRIAD_EXACT_FLOAT)
+            else()
+                set_property(SOURCE "${twin}" TARGET_DIRECTORY ${target} APPEND PROPERTY COMPILE_OPTIONS
+                             ${myriad_kernel_flags_NVIDIA})
+            endif()
             set_property(SOURCE "${twin}" TARGET_DIRECTORY ${target} PROPERTY OBJECT_DEPENDS "${file}")
         endif()
     endforeach()

@@ -13,6 +13,7 @@ import pytest
 
 import example_models
 import myriad_ode as my
+from myriad_ode.kernels import nvrtc
 from myriad_ode.symbolic.evaluate import evaluate
 from myriad_ode.symbolic.node import walk
 
@@ -373,3 +374,24 @@ def test_every_kind_of_component_has_names_in_every_model_and_a_symbol():
     assert sorted(plurals) == sorted(any_model.ComponentNames.__annotations__)
     assert set(plurals) <= set(inspect.signature(my.CppModel).parameters)
     assert all(getattr(my, kind)(f"one_{kind}").value == (kind, f"one_{kind}") for kind in kinds.valued)
+
+
+def test_a_gpu_takes_exact_functions_in_single_precision_where_a_model_asks_for_them():
+    def source(model):
+        written, struct = model.device_source("cash_karp", "float")
+        return nvrtc.source_of(written, struct, "myriad::cash_karp", "float", "constant_bank")
+
+    def pendulum(**options):
+        x, v = my.states("x v")
+        return my.model({x: v, v: -my.sin(x)}, **options)
+
+    def ring(**options):
+        x, v = (units := my.units(40)).states("x v")
+        return my.model({x: v, v: -units.parameter("k") * np.roll(x, 1)}, **options)
+
+    in_cpp = my.CppModel("#define MYRIAD_EXACT_FLOAT\n" + pendulum().cpp("pendulum"), "pendulum", "x v")
+    with_tangents = my.with_tangents(pendulum(exact_float=True))
+    for model in (pendulum(exact_float=True), with_tangents, ring(exact_float=True), in_cpp):
+        assert source(model).startswith("#define MYRIAD_EXACT_FLOAT\n#include")  # before all of the library
+    for model in (pendulum(), ring()):
+        assert "EXACT_FLOAT" not in source(model)

@@ -148,8 +148,8 @@ def by_nvcc(case, folder):
     file = folder / f"{name}.cu"
     file.write_text(source_of(case, lambda header: header.replace("#pragma once", "")))
     made = folder / f"{name}.cubin"
-    done = subprocess.run([nvcc, "-std=c++20", "-arch=sm_90", "-cubin", "-diag-suppress=1427", f"-I{include}",
-                           str(file), "-o", str(made)], capture_output=True, text=True)
+    done = subprocess.run([nvcc, "-std=c++20", "-prec-div=false", "-arch=sm_90", "-cubin", "-diag-suppress=1427",
+                           f"-I{include}", str(file), "-o", str(made)], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     return resources(made.read_bytes())
 

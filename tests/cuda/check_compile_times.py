@@ -50,7 +50,7 @@ def main():
             return found
 
         unit, _ = costs([arguments.reference_compiler, "-std=c++20", "-O1", "-c"], reference, "reference.o")
-        nvcc = [arguments.nvcc, "-std=c++20", "-O3", "-arch=sm_90", "-x", "cu", "-cubin",
+        nvcc = [arguments.nvcc, "-std=c++20", "-O3", "-prec-div=false", "-arch=sm_90", "-x", "cu", "-cubin",
                 *(f"-I{Path(d).resolve()}" for d in arguments.include),
                 *(f"-isystem={d}" for d in arguments.system_include)]
         for file, most, memory in rows:

@@ -226,10 +226,10 @@ def check(kernels, limits):
 
 
 def compile_command(arguments, source, output, to_ptx=False):
-    """The nvcc call: one real architecture and its PTX, no flag that the library promises not to need."""
+    """The nvcc call: one real architecture and its PTX, no flag that myriad_add_models does not have."""
     architecture = arguments.arch.removeprefix("sm_")
     code = f"compute_{architecture}" if to_ptx else f"[sm_{architecture},compute_{architecture}]"
-    command = [arguments.nvcc, "-std=c++20", "-O3", "-ptx" if to_ptx else "-c", "-o", output,
+    command = [arguments.nvcc, "-std=c++20", "-O3", "-prec-div=false", "-ptx" if to_ptx else "-c", "-o", output,
                f"-gencode=arch=compute_{architecture},code={code}", "-Xptxas", "-v", "-Xcompiler", "-Wall,-Wextra",
                "-Werror", "all-warnings"]
     for directory in arguments.include:

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Single precision stays single: no double arithmetic in the kernels of float models, including adaptive ones, events,
-// hooks and dense output. (Trigonometric functions are excluded: CUDA's own reduction of large arguments is in double.)
+// hooks and dense output; and elementary functions and quotients need no local memory.
 //
 //
 // forbid: f64 in integrate_ensemble
 // limit: integrate_ensemble<lorenz, runge_kutta_4> stack 0 spill 0 registers 48
-// limit: integrate_ensemble<bouncer, cash_karp> registers 56 stack 416 spill 108
+// limit: integrate_ensemble<bouncer, cash_karp> registers 56 stack 424 spill 144
 // limit: integrate_ensemble<bouncer, dense<tsitouras_5>> registers 80 stack 424 spill 128
+// limit: integrate_ensemble<waves, runge_kutta_4> stack 0 spill 0
 
 #include <myriad/cuda/kernel.cuh>
 #include <myriad/methods.hpp>
@@ -41,11 +42,24 @@ struct bouncer {
     }
 };
 
+struct waves {
+    enum state { phase, size, n_state };
+    enum parameter { rate, n_parameter };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto t, const myriad::vec<R, n_state>& y, const auto& p) {
+        using myriad::cos, myriad::log, myriad::pow, myriad::sin, myriad::tan;
+        return {p[rate] / (R(1) + sin(y[phase])) + tan(y[size]),
+                pow(y[size], p[rate]) * cos(y[phase] + t) - log(y[size])};
+    }
+};
+
 constexpr auto constant = myriad::shared_placement::constant_bank;
 #define INSTANTIATE(Model, Method)                                                                       \
     template __global__ void myriad::detail::integrate_ensemble<Model, myriad::Method, float, constant>( \
         const __grid_constant__ myriad::detail::launch_arguments<Model, float, constant>);
 INSTANTIATE(lorenz, runge_kutta_4)
 INSTANTIATE(lorenz, tsitouras_5)
+INSTANTIATE(waves, runge_kutta_4)
 INSTANTIATE(bouncer, cash_karp)
 INSTANTIATE(bouncer, dense<myriad::tsitouras_5>)

@@ -26,6 +26,7 @@ GPU_CODE = {
     "myriad/kernel/core/vec.hpp",               # indices out of range, which the host's compiler refuses
     "myriad/kernel/model/rhs_weight.hpp",       # from which weight on a right-hand side is called
     "myriad/kernel/model/unit_views.hpp",       # numbers of units, likewise
+    "myriad/kernel/scalar/fast_float.hpp",      # functions in single precision
     "myriad/kernel/scalar/math.hpp",            # functions of one number
     "myriad/kernel/scalar/trigonometry.hpp",
     "myriad/kernel/scalar/control_number.hpp",  # the step-size control's kind of number

@@ -59,7 +59,7 @@ __device__ __forceinline__ unsigned largest_of_warp(lane_mask of, unsigned value
 #endif
 
 // Functions of numbers. 1 / x and 1 / sqrt(x) to about 2^-20 in double precision; in single precision within an ulp
-// or two; subnormal numbers are zero.
+// or two; subnormal numbers are zero, but for the root and the logarithm of any number.
 #define MYRIAD_APPROXIMATION(real, name, instruction, kind)  \
     __device__ __forceinline__ real name(real x) {           \
         real y;                                              \
@@ -72,9 +72,20 @@ MYRIAD_APPROXIMATION(double, approximate_inverse_root, "rsqrt.approx.ftz.f64", "
 MYRIAD_APPROXIMATION(float, approximate_inverse_root, "rsqrt.approx.ftz.f32", "f")
 MYRIAD_APPROXIMATION(float, approximate_log2, "lg2.approx.ftz.f32", "f")
 MYRIAD_APPROXIMATION(float, approximate_exp2, "ex2.approx.ftz.f32", "f")
+MYRIAD_APPROXIMATION(float, approximate_log2_of_any, "lg2.approx.f32", "f")
+MYRIAD_APPROXIMATION(float, approximate_root, "sqrt.approx.f32", "f")
 #undef MYRIAD_APPROXIMATION
+/// value (1 + growth) where |x| is at most a bound, else the value: without a choice between the two.
+__device__ __forceinline__ float grown_up_to(float bound, float x, float value, float growth) {
+    asm("{\n\t.reg .pred within;\n\tsetp.le.f32 within, %1, %2;\n\t@within fma.rn.f32 %0, %0, %3, %0;\n\t}"
+        : "+f"(value)
+        : "f"(fabsf(x)), "f"(bound), "f"(growth));
+    return value;
+}
 /// Within a few ulps; zero where b is so large that its reciprocal is subnormal.
 __device__ __forceinline__ float approximate_quotient(float a, float b) { return __fdividef(a, b); }
+/// a / b rounded correctly, whatever option the compiler has for quotients.
+__device__ __forceinline__ float rounded_quotient(float a, float b) { return __fdiv_rn(a, b); }
 /// a * b rounded, where the compiler would fuse it with an addition.
 __device__ __forceinline__ double rounded_product(double a, double b) { return __dmul_rn(a, b); }
 #if defined(__CUDA_ARCH__)

@@ -128,7 +128,19 @@ __device__ __forceinline__ double approximate_inverse_root(double x) { return __
 __device__ __forceinline__ float approximate_inverse_root(float x) { return __builtin_amdgcn_rsqf(x); }
 __device__ __forceinline__ float approximate_log2(float x) { return __builtin_amdgcn_logf(x); }
 __device__ __forceinline__ float approximate_exp2(float x) { return __builtin_amdgcn_exp2f(x); }
+__device__ __forceinline__ float approximate_log2_of_any(float x) {
+    const bool subnormal = x < 0x1p-126f;
+    return __builtin_amdgcn_logf(subnormal ? 0x1p23f * x : x) - (subnormal ? 23.0f : 0.0f);
+}
+__device__ __forceinline__ float approximate_root(float x) {
+    const bool subnormal = x < 0x1p-126f;
+    return __builtin_amdgcn_sqrtf(subnormal ? 0x1p24f * x : x) * (subnormal ? 0x1p-12f : 1.0f);
+}
+__device__ __forceinline__ float grown_up_to(float bound, float x, float value, float growth) {
+    return __builtin_fabsf(x) <= bound ? __builtin_fmaf(value, growth, value) : value;
+}
 __device__ __forceinline__ float approximate_quotient(float a, float b) { return a * __builtin_amdgcn_rcpf(b); }
+__device__ __forceinline__ float rounded_quotient(float a, float b) { return a / b; }
 __device__ __forceinline__ double rounded_product(double a, double b) {
 #pragma clang fp contract(off)
     return a * b;

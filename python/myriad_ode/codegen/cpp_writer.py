@@ -48,7 +48,8 @@ class Writer:
     def header(self, name: str) -> str:
         model = self.model
         out = ["// SPDX-License-Identifier: MIT", "// Written by Myriad's Python package from a traced model.",
-               "#pragma once", "", *["#include <myriad/action_queue.hpp>"] * bool(model.queue),
+               "#pragma once", "", *["#define MYRIAD_EXACT_FLOAT", ""] * model.exact_float,
+               *["#include <myriad/action_queue.hpp>"] * bool(model.queue),
                "#include <myriad/model.hpp>", ""]
         macros = [n for n in model.component_names if re.search("[A-Z]{2}", n)]  # maybe, in headers of C
         out += [f"#undef {name}" for name in macros] + [""] * bool(macros)

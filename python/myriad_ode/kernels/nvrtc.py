@@ -23,6 +23,7 @@ from .compiler import Kernel, kernel_of
 _oldest = 12, 6  # older ones crash
 _include = pathlib.Path(__file__).parents[1] / "include"
 _options = ["-std=c++20", "-default-device", f"-I{_include}"]
+_exact_float = "#define MYRIAD_EXACT_FLOAT\n"  # in a model: as in the library for C++ (cmake/MyriadKernelFlags.cmake)
 # NVRTC has no standard library: the part that kernels use is one header.
 _standard = {name: "#include <myriad/python/standard_library.hpp>\n" for name in (
     "algorithm", "array", "bit", "cmath", "concepts", "cstddef", "cstdint", "cstring", "iterator", "limits", "numbers",
@@ -147,7 +148,8 @@ class _Nvrtc:
         self._call("nvrtcCreateProgram", ctypes.byref(program), source.encode(), b"model.cu", len(_standard), texts,
                    names)
         try:
-            chosen = [option.encode() for option in [*_options, architecture, *options]]
+            quotients = f"-prec-div={str(source.startswith(_exact_float)).lower()}"
+            chosen = [option.encode() for option in [*_options, quotients, architecture, *options]]
             done = self._functions.nvrtcCompileProgram(program, len(chosen), (ctypes.c_char_p * len(chosen))(*chosen))
             said = self._text(program, "ProgramLog").rstrip(b"\0").decode(errors="replace")
             if done != 0:
@@ -171,7 +173,8 @@ def placement(model_shared_bytes: int, limit: int) -> str:
 def source_of(header: str, struct: str, method: str, real: str, place: str, generates: bool = False) -> str:
     """The file that is compiled: the model's header and the request for its kernel, and for one that sets the instances
     of studies if the model `generates` them."""
-    program = (f"#include <myriad/python/device_program.cuh>\n\n{header}\n"
+    exact = _exact_float if _exact_float in header else ""  # before the library's headers
+    program = (f"{exact}#include <myriad/python/device_program.cuh>\n\n{header}\n"
                f"using myriad_method = {method};\nMYRIAD_DEVICE_PROGRAM({struct}, myriad_method, {real}, {place})\n")
     if generates:
         program += f"#include <myriad/python/device_generate.cuh>\nMYRIAD_DEVICE_GENERATE({struct}, {real})\n"

@@ -46,8 +46,10 @@ class RecordedModel(AnyModel):
                  finalise: ByComponent | None, generate: ByComponent | None, states: Names | None, parameters: Names,
                  shared: Names, name: str | None, stops: Stop | Sequence[Stop] = (),
                  mass_matrix: npt.ArrayLike | ByComponent | None = None,
-                 triggers: Trigger | Sequence[Trigger] = (), tie_seed: int | None = None) -> None:
+                 triggers: Trigger | Sequence[Trigger] = (), tie_seed: int | None = None,
+                 exact_float: bool = False) -> None:
         self.line = users_line()
+        self.exact_float = exact_float
         self.hidden: frozenset[str] = frozenset()  # accessories that no user has named
         self.jumps_to_miss: list[str] = []  # where equations and events jump and no step ends
         self.jumps_by_state: list[str] | None = None  # where the state makes the equations jump, once that is known

@@ -6,3 +6,4 @@
 
 MYRIAD_INSTANTIATE(function_values::values, myriad::runge_kutta_4)
 MYRIAD_INSTANTIATE_FLOAT(function_values::values, myriad::runge_kutta_4)
+MYRIAD_INSTANTIATE_FLOAT(function_values::elementary, myriad::runge_kutta_4)

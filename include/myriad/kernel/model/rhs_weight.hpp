@@ -38,9 +38,9 @@ inline constexpr int rhs_weight = find_rhs_weight<Model>();
 /// GPUs: a call moves state and slopes between registers, and what waits for it is not computed meanwhile; copies
 /// outgrow the cache of instructions, some 128 kB. dormand_prince_5, NVIDIA H100, ms with copies and with calls:
 /// Kuramoto's oscillators (37 instructions each), 2, 4, 8, 16 and 32 of them in double precision 0.166 and 0.186, 0.297
-/// and 0.314, 0.589 and 0.610, 1.67 and 1.35, 17.2 and 7.2; in single precision, where each sine has a slow path, 0.070
-/// and 0.063, 0.154 and 0.112, 0.643 and 0.187, 1.36 and 0.54, 2.85 and 1.48. Hodgkin and Huxley's axon (53 for each of
-/// four states) 20.8 and 19.6, in single precision 3.51 and 3.70; a bubble (133 in all) by cash_karp 234 and 320.
+/// and 0.314, 0.589 and 0.610, 1.67 and 1.35, 17.2 and 7.2; in single precision (H100) 8, 16 and 32 of them 0.146 and
+/// 0.145, 0.297 and 0.303, 1.11 and 0.70. Hodgkin and Huxley's axon (53 for each of four states) 20.8 and 19.6, in
+/// single precision 1.75 and 1.95; a bubble (133 in all) by cash_karp 234 and 320.
 template <class Model, class S>
 constexpr bool finds_rhs_heavy() {
     constexpr int weight = rhs_weight<Model>, n = n_state<Model>;

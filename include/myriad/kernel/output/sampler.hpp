@@ -169,7 +169,7 @@ private:
             return args.sample.own_times[static_cast<std::int64_t>(k) * args.size + s.instance[i]];
         const R begin = get_lane(o.begin, i), end = get_lane(o.end, i);
         if (k == args.sample.count - 1) return end;
-        return fma(static_cast<R>(k) / static_cast<R>(args.sample.count - 1), end - begin, begin);
+        return fma(rounded_quotient(static_cast<R>(k), static_cast<R>(args.sample.count - 1)), end - begin, begin);
     }
 
     /// The time of the last sample, infinite if there is none.

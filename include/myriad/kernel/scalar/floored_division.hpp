@@ -44,7 +44,7 @@ requires detail::real_kind<detail::common_kind<A, B>> MYRIAD_FUNCTION auto floor
         using f = detail::functions<S>;
         const S x = detail::to_kind<S>(a), divisor = detail::to_kind<S>(b);
         const S zero = detail::to_kind<S>(0), one = detail::to_kind<S>(1);
-        const S rest = f::fmod(x, divisor), whole = (x - rest) / divisor;
+        const S rest = f::fmod(x, divisor), whole = detail::rounded_quotient(S(x - rest), divisor);
         const auto below = ((rest < zero) & (divisor > zero)) | ((rest > zero) & (divisor < zero));
         const S quotient = f::rint(select(below, whole - one, whole));
         return select(divisor == zero, x / divisor, select(quotient == zero, f::copysign(zero, x / divisor), quotient));

@@ -11,6 +11,7 @@
 
 #include "myriad/kernel/core/macros.hpp"
 #include "myriad/kernel/scalar/exponential.hpp"
+#include "myriad/kernel/scalar/fast_float.hpp"
 #include "myriad/kernel/scalar/select.hpp"
 #include "myriad/kernel/scalar/trigonometry.hpp"
 #include "myriad/kernel/scalar/wrapping.hpp"
@@ -27,6 +28,18 @@ inline __device__ __noinline__ double sin_of_large(double x) { return std::sin(x
 inline __device__ __noinline__ double cos_of_large(double x) { return std::cos(x); }
 #endif
 
+// In single precision on GPUs, functions of fast_float.hpp take the place of the standard library's.
+#if MYRIAD_FAST_FLOAT
+#define MYRIAD_STANDARD_OR_FAST(name, ...)       \
+    if constexpr (sizeof(T) == sizeof(float)) {  \
+        return fast_float<T>::name(__VA_ARGS__); \
+    } else {                                     \
+        return std::name(__VA_ARGS__);           \
+    }
+#else
+#define MYRIAD_STANDARD_OR_FAST(name, ...) return std::name(__VA_ARGS__);
+#endif
+
 template <std::floating_point T>
 struct functions<T> {
     static constexpr T pi = T(3.14159265358979323846L);
@@ -37,25 +50,25 @@ struct functions<T> {
     static MYRIAD_FUNCTION T floor(T x) { return std::floor(x); }
     static MYRIAD_FUNCTION T round(T x) { return std::round(x); }
     static MYRIAD_FUNCTION T rint(T x) { return std::rint(x); }
-    static MYRIAD_FUNCTION T tan(T x) { return std::tan(x); }
+    static MYRIAD_FUNCTION T tan(T x) { MYRIAD_STANDARD_OR_FAST(tan, x) }
     static MYRIAD_FUNCTION T asin(T x) { return std::asin(x); }
     static MYRIAD_FUNCTION T acos(T x) { return std::acos(x); }
     static MYRIAD_FUNCTION T atan(T x) { return std::atan(x); }
     static MYRIAD_FUNCTION T sinh(T x) { return std::sinh(x); }
     static MYRIAD_FUNCTION T cosh(T x) { return std::cosh(x); }
     static MYRIAD_FUNCTION T tanh(T x) { return std::tanh(x); }
-    static MYRIAD_FUNCTION T exp(T x) { return std::exp(x); }
-    static MYRIAD_FUNCTION T exp2(T x) { return std::exp2(x); }
-    static MYRIAD_FUNCTION T log(T x) { return std::log(x); }
-    static MYRIAD_FUNCTION T log2(T x) { return std::log2(x); }
-    static MYRIAD_FUNCTION T log10(T x) { return std::log10(x); }
+    static MYRIAD_FUNCTION T exp(T x) { MYRIAD_STANDARD_OR_FAST(exp, x) }
+    static MYRIAD_FUNCTION T exp2(T x) { MYRIAD_STANDARD_OR_FAST(exp2, x) }
+    static MYRIAD_FUNCTION T log(T x) { MYRIAD_STANDARD_OR_FAST(log, x) }
+    static MYRIAD_FUNCTION T log2(T x) { MYRIAD_STANDARD_OR_FAST(log2, x) }
+    static MYRIAD_FUNCTION T log10(T x) { MYRIAD_STANDARD_OR_FAST(log10, x) }
     static MYRIAD_FUNCTION T expm1(T x) { return std::expm1(x); }
     static MYRIAD_FUNCTION T log1p(T x) { return std::log1p(x); }
-    static MYRIAD_FUNCTION T pow(T x, T y) { return std::pow(x, y); }
+    static MYRIAD_FUNCTION T pow(T x, T y) { MYRIAD_STANDARD_OR_FAST(pow, x, y) }
     static MYRIAD_FUNCTION T powr(T x, T y) { return exponential<T>::powr(x, y); }
     static MYRIAD_FUNCTION void sincos(T x, T& sine, T& cosine) { trigonometry<T>::sincos(x, sine, cosine); }
     static MYRIAD_FUNCTION void sincospi(T x, T& sine, T& cosine) { trigonometry<T>::sincospi(x, sine, cosine); }
-    static MYRIAD_FUNCTION T atan2(T y, T x) { return std::atan2(y, x); }
+    static MYRIAD_FUNCTION T atan2(T y, T x) { MYRIAD_STANDARD_OR_FAST(atan2, y, x) }
     static MYRIAD_FUNCTION T hypot(T x, T y) { return std::hypot(x, y); }
     static MYRIAD_FUNCTION T copysign(T x, T sign) { return std::copysign(x, sign); }
     static MYRIAD_FUNCTION T fmod(T x, T y) { return std::fmod(x, y); }
@@ -93,7 +106,7 @@ struct functions<T> {
             if (MYRIAD_UNLIKELY(!ordinary)) root = sqrt_of_extreme(x);
             return root;
         } else {
-            return std::sqrt(x);
+            MYRIAD_STANDARD_OR_FAST(sqrt, x)
         }
     }
     static MYRIAD_FUNCTION double rsqrt_of_ordinary(double x) {
@@ -116,7 +129,7 @@ struct functions<T> {
             if (MYRIAD_UNLIKELY(!(std::fabs(x) <= half_wave<T>::limit))) result = sin_of_large(x);
             return result;
         } else {
-            return std::sin(x);
+            MYRIAD_STANDARD_OR_FAST(sin, x)
         }
     }
     static MYRIAD_FUNCTION T cos(T x) {
@@ -125,7 +138,7 @@ struct functions<T> {
             if (MYRIAD_UNLIKELY(!(std::fabs(x) <= half_wave<T>::limit))) result = cos_of_large(x);
             return result;
         } else {
-            return std::cos(x);
+            MYRIAD_STANDARD_OR_FAST(cos, x)
         }
     }
     static MYRIAD_FUNCTION T sinpi(T x) { return ::sinpi(x); }
@@ -171,6 +184,16 @@ struct functions<T> {
     }
 #endif
 };
+#undef MYRIAD_STANDARD_OR_FAST
+
+/// a / b rounded correctly, where other quotients in single precision are not, on GPUs.
+template <class S>
+MYRIAD_FUNCTION S rounded_quotient(const S& a, const S& b) {
+#if MYRIAD_ON_GPU
+    if constexpr (std::same_as<S, float>) return gpu::rounded_quotient(a, b);
+#endif
+    return a / b;
+}
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET
 
@@ -181,7 +204,7 @@ namespace myriad::inline MYRIAD_TARGET {
     MYRIAD_FUNCTION S name(const S& x) {      \
         return detail::functions<S>::name(x); \
     }
-/// Square root, correctly rounded; NaN of negative numbers.
+/// Square root, correctly rounded, but for single precision on GPUs, within an ulp; NaN of negative numbers.
 MYRIAD_UNARY(sqrt)
 /// Cube root.
 MYRIAD_UNARY(cbrt)
