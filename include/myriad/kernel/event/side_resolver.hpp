@@ -197,6 +197,7 @@ struct side_resolver {
                 if (moved && beyond) side = sign_of(g[j]);
                 on_jump.set(j, false);
                 e.left.set(j, i, moved && beyond);
+                if (moved) sides.memory_of(i).moved_at[j] = s.iterations_of(sides.args, i);
                 sides.put_side(j, i, side);
             } else if (beyond) {
                 e.left.set(j, i, e.left.get(j, i) || g[j] != get_lane(events.value[j], i));
