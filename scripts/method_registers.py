@@ -9,10 +9,12 @@ features, and writes a Markdown table, to the standard output or, with --into FI
 or does not compile.
 """
 import argparse
+import os
 import re
 import subprocess
 import sys
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -41,7 +43,7 @@ BEGIN, END = "<!-- registers -->", "<!-- end of registers -->"
 
 def kernels_of(arguments, source, flags):
     """Resources of the kernels in a source, by name."""
-    arguments.flag = flags
+    arguments = argparse.Namespace(**vars(arguments) | {"flag": flags})
     with tempfile.TemporaryDirectory() as folder:
         command = compile_command(arguments, str(ROOT / "benchmarks" / "methods" / source), f"{folder}/kernel.o")
         result = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -71,10 +73,10 @@ def cell(used):
 def table(arguments, real):
     """Lines of one table."""
     lines = ["| method | " + " | ".join(f"n = {n}" for n in SIZES) + " |", "|---" * (1 + len(SIZES)) + "|"]
-    for method in METHODS:
-        used = resources(arguments, method, real)
-        lines.append(f"| `{method}` | " + " | ".join(cell(used[n]) for n in SIZES) + " |")
-        print(f"{real}: {method}", file=sys.stderr)
+    with ThreadPoolExecutor(arguments.jobs) as pool:
+        for method, used in zip(METHODS, pool.map(lambda method: resources(arguments, method, real), METHODS)):
+            lines.append(f"| `{method}` | " + " | ".join(cell(used[n]) for n in SIZES) + " |")
+            print(f"{real}: {method}", file=sys.stderr)
     return lines
 
 
@@ -111,6 +113,7 @@ def main():
     parser.add_argument("--eigen", default="/usr/include/eigen3", metavar="DIR",
                         help="Eigen (default: /usr/include/eigen3)")
     parser.add_argument("--features", action="store_true", help="the table of events and hooks")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="compilers at a time (default: all cores)")
     parser.add_argument("--into", metavar="FILE", help="Markdown file to write the table into")
     arguments = parser.parse_args()
     arguments.include = [str(ROOT / "include"), str(ROOT / "backends" / "cuda")]

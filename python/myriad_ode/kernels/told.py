@@ -12,8 +12,8 @@ _patience = 0.5  # seconds without a word
 
 
 def seconds_to_compile(source: str, stages: int) -> float:
-    """About how long a compiler takes for a kernel, from the length of the model's source and the stages of its
-    method: measured by g++ 12 for models of 1 to 60 states, within a factor of two."""
+    """A rough guess at how long a compiler takes for a kernel, from the length of the model's source and the stages of
+    its method."""
     return 1.5 + len(source) * (1 + stages / 8) / 3000
 
 
