@@ -10,6 +10,7 @@
 
 #include "myriad/kernel/core/macros.hpp"
 #include "myriad/kernel/core/vec.hpp"
+#include "myriad/kernel/scalar/math.hpp"
 #include "myriad/kernel/scalar/select.hpp"
 
 namespace myriad::inline MYRIAD_TARGET {
@@ -68,7 +69,7 @@ MYRIAD_FUNCTION R minus_log(R x) {
     constexpr R root_of_half = R(0.70710678118654752);
     int exponent = 0;
     const R m = std::frexp(x, &exponent);
-    const R s = (m - root_of_half) / (m + root_of_half);
+    const R s = rounded_quotient(m - root_of_half, m + root_of_half);
     const R series = fused_polynomial(s * s, 2.0, 2.0 / 3, 2.0 / 5, 2.0 / 7, 2.0 / 9, 2.0 / 11, 2.0 / 13, 2.0 / 15,
                                       2.0 / 17, 2.0 / 19, 2.0 / 21, 2.0 / 23);
     return std::fma(static_cast<R>(exponent) - R(0.5), R(-0.69314718055994531), -(s * series));
@@ -85,16 +86,17 @@ namespace myriad::inline MYRIAD_TARGET {
 /// the C library emulates them.
 template <random_real R>
 MYRIAD_FUNCTION R normal_quantile(R p) {
-    using detail::fused_polynomial;
+    using detail::fused_polynomial, detail::rounded_quotient;
     const R q = p - R(0.5);
     if (std::fabs(q) <= R(0.425)) {
         const R r = std::fma(-q, q, R(0.180625));
-        return q * (fused_polynomial(r, 3.3871328727963666080, 1.3314166789178437745e2, 1.9715909503065514427e3,
-                                     1.3731693765509461125e4, 4.5921953931549871457e4, 6.7265770927008700853e4,
-                                     3.3430575583588128105e4, 2.5090809287301226727e3) /
-                    fused_polynomial(r, 1.0, 4.2313330701600911252e1, 6.8718700749205790830e2, 5.3941960214247511077e3,
-                                     2.1213794301586595867e4, 3.9307895800092710610e4, 2.8729085735721942674e4,
-                                     5.2264952788528545610e3));
+        return q * rounded_quotient(
+                       fused_polynomial(r, 3.3871328727963666080, 1.3314166789178437745e2, 1.9715909503065514427e3,
+                                        1.3731693765509461125e4, 4.5921953931549871457e4, 6.7265770927008700853e4,
+                                        3.3430575583588128105e4, 2.5090809287301226727e3),
+                       fused_polynomial(r, 1.0, 4.2313330701600911252e1, 6.8718700749205790830e2,
+                                        5.3941960214247511077e3, 2.1213794301586595867e4, 3.9307895800092710610e4,
+                                        2.8729085735721942674e4, 5.2264952788528545610e3));
     }
     const R tail = q < R(0) ? p : R(1) - p;  // exact
     if (!(tail > R(0))) return tail == R(0) ? q * infinity_of<R> : nan_of<R>;
@@ -102,20 +104,22 @@ MYRIAD_FUNCTION R normal_quantile(R p) {
     R x;
     if (root <= R(5)) {
         const R r = root - R(1.6);
-        x = fused_polynomial(r, 1.42343711074968357734, 4.63033784615654529590, 5.76949722146069140550,
+        x = rounded_quotient(
+            fused_polynomial(r, 1.42343711074968357734, 4.63033784615654529590, 5.76949722146069140550,
                              3.64784832476320460504, 1.27045825245236838258, 2.41780725177450611770e-1,
-                             2.27238449892691845833e-2, 7.74545014278341407640e-4) /
+                             2.27238449892691845833e-2, 7.74545014278341407640e-4),
             fused_polynomial(r, 1.0, 2.05319162663775882187, 1.67638483018380384940, 6.89767334985100004550e-1,
                              1.48103976427480074590e-1, 1.51986665636164571966e-2, 5.47593808499534494600e-4,
-                             1.05075007164441684324e-9);
+                             1.05075007164441684324e-9));
     } else {
         const R r = root - R(5);
-        x = fused_polynomial(r, 6.65790464350110377720, 5.46378491116411436990, 1.78482653991729133580,
+        x = rounded_quotient(
+            fused_polynomial(r, 6.65790464350110377720, 5.46378491116411436990, 1.78482653991729133580,
                              2.96560571828504891230e-1, 2.65321895265761230930e-2, 1.24266094738807843860e-3,
-                             2.71155556874348757815e-5, 2.01033439929228813265e-7) /
+                             2.71155556874348757815e-5, 2.01033439929228813265e-7),
             fused_polynomial(r, 1.0, 5.99832206555887937690e-1, 1.36929880922735805310e-1, 1.48753612908506148525e-2,
                              7.86869131145613259100e-4, 1.84631831751005468180e-5, 1.42151175831644588870e-7,
-                             2.04426310338993978564e-15);
+                             2.04426310338993978564e-15));
     }
     return q < R(0) ? -x : x;
 }

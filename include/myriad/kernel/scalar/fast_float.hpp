@@ -133,7 +133,7 @@ private:
     static MYRIAD_FUNCTION T sine_of(const half_wave_angle& a) {
         const T z = a.rest * a.rest;
         const T tail = polynomial(z, T(-0x1.55554cp-3), T(0x1.110ef6p-7), T(-0x1.9f758ap-13), T(0x1.5e02d8p-19));
-        return A::from_bits(A::to_bits(std::fma(z * a.rest, tail, a.rest)) ^ a.odd);
+        return A::from_bits(A::to_bits(a.rest * std::fma(z, tail, T(1))) ^ a.odd);  // -0 keeps its sign
     }
     static MYRIAD_FUNCTION T cosine_of(const half_wave_angle& a) {
         const T z = a.rest * a.rest;
