@@ -13,7 +13,6 @@ import difflib
 import importlib.util
 import math
 import pathlib
-import re
 import sys
 import textwrap
 

@@ -122,7 +122,8 @@ def faults(seed, denominator):
 
 @pytest.mark.parametrize("denominator", [1, 2, 3, 8])
 def test_events_are_those_of_exact_arithmetic(denominator):
-    wrong = [fault for seed in range(100) for fault in faults(seed, denominator)]
+    seeds = *range(100), 308, 338  # in which actions move states onto surfaces of other events
+    wrong = [fault for seed in seeds for fault in faults(seed, denominator)]
     assert not wrong, "\n".join(wrong)
 
 
