@@ -197,13 +197,16 @@ struct side_resolver {
                 if (moved && beyond) side = sign_of(g[j]);
                 on_jump.set(j, false);
                 e.left.set(j, i, moved && beyond);
-                if (moved) sides.memory_of(i).moved_at[j] = s.iterations_of(sides.args, i);
                 sides.put_side(j, i, side);
             } else if (beyond) {
                 e.left.set(j, i, e.left.get(j, i) || g[j] != get_lane(events.value[j], i));
             }
         }
         if (MYRIAD_UNLIKELY(!known && at_jump.any_of())) take_sides_ahead(i, at_jump, g, along);
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j)
+            if (events.which.get(j, i) && in_question[j])
+                sides.memory_of(i).moved_at[j] = s.iterations_of(sides.args, i);
         sides.update_in_question(i);
     }
 
