@@ -149,13 +149,3 @@ def test_a_flat_event_function_is_located_to_the_resolution_of_time():
         counts, states, _ = solved(system, True)
         assert counts == [1]
         assert abs(states[0] - exact(system)[1][0]) < 4e-15, (form, states)
-
-
-def test_an_event_that_is_ahead_does_not_fire_at_the_end_after_many_steps():
-    """The rounding errors of steps before its last action do not count."""
-    x, n = my.state("x"), my.integer_accessory("n")
-    model = my.model({x: 1.0}, events=my.event(x - 1, direction="rising", do={x: 0, n: n + 1}), accessories={n: 0})
-    run = my.solve(model, size=1, start={x: 0.0}, time=(0, 200.9999999), maximum_step=2e-4, max_steps=10**7,
-                   device="cpu:1", interpreted=True)
-    assert run[n][0] == 200
-    assert run[x][0] == pytest.approx(0.9999999, abs=1e-10)
