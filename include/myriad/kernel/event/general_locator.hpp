@@ -144,8 +144,9 @@ private:
     }
 
     /// Handles a redone step that ended before its crossing: close to it its events fire; else it is lengthened. Other
-    /// functions that crossed in the trial before fire along if their crossings cannot be told from this one: they are
-    /// within their tolerance or rounding error, and go to their other side; or they lie within the rounding of time.
+    /// functions that crossed in the trial before fire along if their crossings cannot be told from this one: they go
+    /// to their other side, and are within the tolerance given or there as soon as rounding lets them move; or they lie
+    /// within the rounding of time.
     MYRIAD_FUNCTION trial_outcome arrive(int i, const ends_of_step& step, const reals& side, const arrival& reached,
                                          fired& events) const {
         auto& e = sides.e;

@@ -82,8 +82,8 @@ namespace myriad::inline MYRIAD_TARGET {
 /// The inverse of the normal distribution function, for p in (0, 1); -infinity at 0, infinity at 1, NaN beyond:
 /// Wichura's algorithm AS 241, PPND16, Appl. Statist. 37 (1988) 477-484. Relative error at most 1e-15 in double
 /// precision, 1e-6 in single precision. Its bits are the same on every target, as it uses only fused operations,
-/// integer operations, divisions and square roots, which no compiler replaces. On processors without fused operations
-/// the C library emulates them.
+/// integer operations, rounded quotients and square roots, which no compiler replaces. On processors without fused
+/// operations the C library emulates them.
 template <random_real R>
 MYRIAD_FUNCTION R normal_quantile(R p) {
     using detail::fused_polynomial, detail::rounded_quotient;

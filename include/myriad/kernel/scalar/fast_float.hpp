@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Elementary functions of a GPU's thread in single precision. CUDA's own sine, cosine and tangent have in every call a
 // loop over the digits of pi, its power, root and division a slow path: 136, 93, 35 and 116 instructions, where these
-// take 20, 61, 4 and 7. Theirs of the other functions have no branch, and are used where they are as short. Defining
+// take 21, 61, 4 and 7. Theirs of the other functions have no branch, and are used where they are as short. Defining
 // MYRIAD_EXACT_FLOAT, for a whole model file, gives CUDA's for all.
 //
-// Largest relative errors (docs/numerics.md has the measurements): 1e-6, of sine and cosine 2e-7 absolutely, for
+// Largest relative errors (docs/numerics.md has the measurements): 1e-6, of sine and cosine 4e-7 absolutely, for
 // arguments and results that are normal. Results of exp and exp2 below the smallest normal number are zero, as in
 // packs. NaN, infinities, zeros and what lies beyond a function's range give what CUDA's functions give.
 #pragma once
