@@ -29,7 +29,6 @@ public:
 
     /// Nothing is written to the ensemble before all of its data are checked.
     void run() {
-        relay_.last_call = progress_relay::clock::now();
         engine& first = pipeline_.first();
         plan_ = chunk_plan(options_, arguments_, first);
         first.reserve(arguments_, plan_.largest());

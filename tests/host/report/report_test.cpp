@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a call reports: instances by status, the first failing one with its inputs, work, idle lanes, progress.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -275,7 +276,7 @@ TEST_CASE("progress counts the instances that are done, and all of them once, at
     }
 }
 
-TEST_CASE("the progress function is called from the calling thread, with counts that rise to the total", "[report]") {
+TEST_CASE("the progress function is called from the calling thread, with counts that never fall", "[report]") {
     for (const auto how : {myriad::schedule::automatic, myriad::schedule::in_order}) {
         for (const int threads : {1, 2}) {
             CAPTURE(myriad::name_of(how), threads);
@@ -297,9 +298,8 @@ TEST_CASE("the progress function is called from the calling thread, with counts 
             REQUIRE(told.size() >= (threads == 1 ? 2u : 1u));
             CHECK(total == 5000);
             CHECK_FALSE(elsewhere);
-            CHECK(told.front() > 0);
             CHECK(told.back() == 5000);
-            for (std::size_t k = 1; k < told.size(); ++k) CHECK(told[k] > told[k - 1]);
+            CHECK(std::is_sorted(told.begin(), told.end()));  // a count is told again where none has ended for a while
         }
     }
 }
@@ -311,6 +311,7 @@ TEST_CASE("progress of few instances, each of them long, is told one by one", "[
     o.chunk_size = 1;
     o.progress = [&](std::int64_t done, std::int64_t) { told.push_back(done); };
     solve<cash_karp>(one_thread, e, o);
+    told.erase(std::unique(told.begin(), told.end()), told.end());  // told again where none has ended for a while
     CHECK(told == std::vector<std::int64_t>{1, 2, 3, 4, 5, 6});
 }
 

@@ -24,7 +24,7 @@ struct progress_relay {
     std::int64_t total;
     std::exception_ptr failure;
     std::int64_t last_done = 0;
-    clock::time_point last_call{}, failed_at{};
+    clock::time_point last_call = clock::now(), failed_at{};
     clock::time_point deadline = clock::time_point::max();
     bool over = false;  // the deadline has passed with work left
 
