@@ -149,3 +149,13 @@ def test_a_flat_event_function_is_located_to_the_resolution_of_time():
         counts, states, _ = solved(system, True)
         assert counts == [1]
         assert abs(states[0] - exact(system)[1][0]) < 4e-15, (form, states)
+
+
+def test_after_many_steps_an_event_fires_at_the_end_of_the_domain_exactly_if_it_is_due_by_then():
+    """The errors of steps before its last action do not count, those of the times of all actions do."""
+    x, n = my.state("x"), my.integer_accessory("n")
+    model = my.model({x: 1.0}, events=my.event(x - 0.1, direction="rising", do={x: 0, n: n + 1}), accessories={n: 0})
+    for end, due in [(20.09999999, 200), (20.1, 201), (20.10000001, 201)]:
+        run = my.solve(model, size=1, start={x: 0.0}, time=(0, end), maximum_step=2e-4, max_steps=10**7,
+                       device="cpu:1", interpreted=True)
+        assert run[n][0] == due, (end, run[n][0], run[x][0])

@@ -23,14 +23,17 @@ struct event_memory {
     flags on_jump;  // the event fired right before a jump that no step has passed yet; the side is the one beyond it
     R jump_time;    // that it takes to pass it
     std::int32_t waited;                         // turns that it has waited for other threads' events
+    std::int32_t moves;                          // how often in the phase actions of events have moved functions
     vec<std::int32_t, n_event<Model>> lingered;  // how often in a row the event has fired without its function leaving
+    vec<std::int64_t, n_event<Model>> moved_at;  // the phase's trials when an action of its event moved its function
 
     /// As at the start of a phase in which no function is on its surface or at a jump.
     MYRIAD_FUNCTION void clear() {
         redo.clear();
         open.clear(), held.clear(), fired_last.clear(), fresh.clear(), on_jump.clear();
+        moves = 0;
         MYRIAD_UNROLL
-        for (int j = 0; j < n_event<Model>; ++j) lingered[j] = 0;
+        for (int j = 0; j < n_event<Model>; ++j) lingered[j] = 0, moved_at[j] = 0;
     }
 };
 
@@ -124,22 +127,38 @@ MYRIAD_FUNCTION void find_headings_without_slope(event_scratch<Model, R>* at) {
         if (!detail::tells_heading(at->slope[j])) at->heading[j] = at->place.sign[j];
 }
 
-/// Finds the event functions after the time `reach` beyond the end of the step, on a straight path, as `heading`, and
-/// begins a path there for the signs that they show first beyond twice that time.
+/// How many steps' rounding errors the time of an event may have: it is located to eight roundings of t.
+inline constexpr int steps_of_location = 4;
+
+/// Finds each event function beyond the end of the step, on a straight path, as `heading`: by as much later as rounding
+/// errors may have made it, `rounding` in each of the `iterations` since an action of its own event moved it, and those
+/// of the times of all actions. Begins a path there for the signs that functions show first beyond twice the longest
+/// such time of those that get to zero.
 template <class Model, class R>
-MYRIAD_RARE_FUNCTION void begin_beyond(event_scratch<Model, R>* at, R reach) {
+MYRIAD_RARE_FUNCTION void begin_beyond(event_scratch<Model, R>* at, const event_memory<Model, R>* own, R rounding,
+                                       std::int64_t iterations) {
     const auto& step = at->step;
     auto& place = at->place;
     place.p = step.p;
-    place.t = step.t1, place.h = step.h, place.first = R(2) * reach;
+    place.t = step.t1, place.h = step.h, place.first = R(0);
     place.y = step.y1, place.slope = step.slope1;
     const R per_time = reciprocal(step.h);
     MYRIAD_UNROLL
-    for (int c = 0; c < n_state<Model>; ++c) {
-        place.bend[c] = (step.slope1[c] - step.slope[c]) * per_time;
-        place.there[c] = fma(copysign(reach, step.h), step.slope1[c], step.y1[c]);
+    for (int c = 0; c < n_state<Model>; ++c) place.bend[c] = (step.slope1[c] - step.slope[c]) * per_time;
+    MYRIAD_ROLLED
+    for (at->function = 0; at->function < n_event<Model>; ++at->function) {
+        MYRIAD_OPTIMISATION_BARRIER(at);  // else what it points to occupies registers throughout
+        const auto steps = iterations - own->moved_at[at->function] + steps_of_location * own->moves;
+        place.length = copysign(rounding * static_cast<R>(steps), step.h);
+        MYRIAD_UNROLL
+        for (int c = 0; c < n_state<Model>; ++c) place.there[c] = fma(place.length, step.slope1[c], step.y1[c]);
+        place.here = detail::evaluate_events<Model>(step.t1 + place.length, place.there, place.p);
+        MYRIAD_OPTIMISATION_BARRIER(at);
+        const int j = at->function;
+        at->heading[j] = place.here[j];
+        if (at->side[j] * step.g1[j] <= R(0) || at->side[j] * place.here[j] <= R(0))
+            place.first = max(place.first, R(2) * abs(place.length));
     }
-    at->heading = detail::evaluate_events<Model>(step.t1 + copysign(reach, step.h), place.there, place.p);
 }
 
 /// What event location keeps and works on in a pack. One object, since each would take registers for its address.

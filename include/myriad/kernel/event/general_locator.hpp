@@ -225,7 +225,7 @@ private:
     MYRIAD_FUNCTION void end_on_root(int i, const ends_of_step& step, const reals& side, fired& events) const {
         auto& own = sides.memory_of(i);
         auto& found = sides.scratch();
-        detail::begin_beyond(&found, end_rounding(i, step));
+        detail::begin_beyond(&found, &own, step_rounding(i, step), sides.s.iterations_of(sides.args, i));
         detail::find_first_signs(&found.place);
         own.at_jump.clear();
         MYRIAD_UNROLL
@@ -238,13 +238,11 @@ private:
         }
     }
 
-    /// A bound on the time between t_end or a stop and a crossing that the phase's rounding errors may have caused.
-    MYRIAD_FUNCTION R end_rounding(int i, const ends_of_step& step) const {
+    /// A bound on the time by which the rounding errors of a step may have moved a crossing at t_end or a stop.
+    MYRIAD_FUNCTION R step_rounding(int i, const ends_of_step& step) const {
         const auto& args = sides.args;
-        const auto& s = sides.s;
-        const R t_begin = args.t_begin != nullptr ? args.t_begin[s.instance[i]] : args.common_t_begin;
-        const R steps = static_cast<R>(s.iterations_of(args, i));
-        return R(2) * epsilon_of<R> * steps * max(abs(step.t1), abs(t_begin));
+        const R t_begin = args.t_begin != nullptr ? args.t_begin[sides.s.instance[i]] : args.common_t_begin;
+        return R(2) * epsilon_of<R> * max(abs(step.t1), abs(t_begin));
     }
 };
 

@@ -203,6 +203,11 @@ struct side_resolver {
             }
         }
         if (MYRIAD_UNLIKELY(!known && at_jump.any_of())) take_sides_ahead(i, at_jump, g, along);
+        auto& own = sides.memory_of(i);
+        ++own.moves;
+        MYRIAD_UNROLL
+        for (int j = 0; j < m; ++j)
+            if (events.which.get(j, i) && in_question[j]) own.moved_at[j] = s.iterations_of(sides.args, i);
         sides.update_in_question(i);
     }
 
