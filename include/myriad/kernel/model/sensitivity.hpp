@@ -288,7 +288,7 @@ private:
     template <class R>
     MYRIAD_FUNCTION static void shift(const auto& wrapped, vec<R, n_tangent>& v, const vec<R, n_directions>& dt,
                                       R sign) {
-        const auto slope = base::template slope<R>(wrapped);
+        const auto slope = detail::crossing<Model, directions>::template slope<R>(wrapped);
         for (int i = 0; i < n_directions; ++i)
             for (int c = 0; c < n_original; ++c)
                 v[i * n_original + c] = fma(sign * slope[c], dt[i], v[i * n_original + c]);

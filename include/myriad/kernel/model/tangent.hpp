@@ -45,8 +45,7 @@ struct with_tangents : detail::with_variations<Model, detail::state_directions<v
         const bool at_t_begin = wrapped.t == wrapped.t_begin;
         if constexpr (detail::has_initialise<Model>) {
             const auto given = detail::part<n_tangent>(wrapped.y, n_original);
-            detail::move_directions<Model, detail::state_directions<vectors>>(
-                wrapped, [](auto& own) MYRIAD_LAMBDA { Model::initialise(own); });
+            base::initialise(wrapped);
             if (wrapped.phase == 0) detail::set_part(wrapped.y, n_original, given);  // they start as given
         }
         wrapped.accessory[phase_began] = at_t_begin ? wrapped.t_begin : wrapped.t;
@@ -59,9 +58,7 @@ struct with_tangents : detail::with_variations<Model, detail::state_directions<v
 
     /// The model's own hook; then orthonormalises the tangents and adds their growth to the sums.
     MYRIAD_FUNCTION static void finalise(auto& wrapped) {
-        if constexpr (detail::has_finalise<Model>)
-            detail::move_directions<Model, detail::state_directions<vectors>>(
-                wrapped, [](auto& own) MYRIAD_LAMBDA { Model::finalise(own); });
+        if constexpr (detail::has_finalise<Model>) base::finalise(wrapped);
         const bool counts = wrapped.phase >= wrapped.shared_integer[transient_phases];
         detail::orthonormalise<n_original, vectors>(wrapped.y, n_original,
                                                     [&](int i, const auto& length) MYRIAD_LAMBDA {

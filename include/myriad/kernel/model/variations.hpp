@@ -7,74 +7,18 @@
 #include <utility>
 
 #include "myriad/kernel/core/static_for.hpp"
+#include "myriad/kernel/model/forwarded_hooks.hpp"
 #include "myriad/kernel/model/moving_summaries.hpp"
 #include "myriad/kernel/model/tangent_lane.hpp"
 #include "myriad/kernel/scalar/lanes.hpp"
 
 namespace myriad::detail {
 
-// One layer for each optional function, present only if the model has it, so that the wrapped model has the same
-// functions as the model. Each layer inherits the previous one, and hides the model's function with its own.
-namespace variation_layers {
-
-template <class Model, class Directions>
-struct events_layer : Model {};
-template <class Model, class Directions>
-requires has_events<Model>
-struct events_layer<Model, Directions> : Model {
-    template <class R>
-    MYRIAD_FUNCTION static vec<R, n_event<Model>> events(auto t, const auto& y, const auto& p) {
-        return Model::template events<R>(t, part<n_state<Model>>(y), p);
-    }
-};
-
-template <class Model, class Directions>
-struct observe_layer : events_layer<Model, Directions> {};
-template <class Model, class Directions>
-requires has_observe<Model>
-struct observe_layer<Model, Directions> : events_layer<Model, Directions> {
-    template <class R>
-    MYRIAD_FUNCTION static vec<R, n_observed<Model>> observe(auto t, const auto& y, const auto& p) {
-        return Model::template observe<R>(t, part<n_state<Model>>(y), p);
-    }
-};
-
-template <class Model, class Directions>
-struct after_step_layer : observe_layer<Model, Directions> {};
-template <class Model, class Directions>
-requires(has_after_step<Model> && !has_generic_after_step<Model>) struct after_step_layer<Model, Directions>
-    : observe_layer<Model, Directions> {
-    MYRIAD_FUNCTION static action after_step(auto& wrapped) {
-        action wanted = action::proceed;
-        detail::move_directions<Model, Directions>(wrapped, [&](auto& own) MYRIAD_LAMBDA {
-            wanted = detail::action_of([&]() MYRIAD_LAMBDA { return Model::after_step(own); });
-        });
-        return wanted;
-    }
-};
-template <class Model, class Directions>
-requires has_generic_after_step<Model>
-struct after_step_layer<Model, Directions> : observe_layer<Model, Directions> {
-    template <class R>
-    MYRIAD_FUNCTION static mask_of<R> after_step(auto& wrapped) {
-        mask_of<R> stops = mask_of<R>(false);
-        detail::move_directions<Model, Directions>(wrapped, [&](auto& own) MYRIAD_LAMBDA {
-            if constexpr (std::is_void_v<decltype(Model::template after_step<dual<R>>(own))>) {
-                Model::template after_step<dual<R>>(own);
-            } else {
-                stops = Model::template after_step<dual<R>>(own);
-            }
-        });
-        return stops;
-    }
-};
-
 /// A neighbouring solution reaches the surface g = 0 later by dt = -(grad g v) / (dg/dt). With f and f+ the slopes
 /// before and after the action y -> r(t, y), its distance v becomes Dr (v + f dt) + dr/dt dt - f+ dt (Mueller, Chaos,
 /// Solitons and Fractals 5 (1995) 1671), where the first two terms are the derivative of r along (v + f dt, dt).
 template <class Model, class Directions>
-struct crossing_layer : after_step_layer<Model, Directions> {
-protected:
+struct crossing {
     static constexpr int n = n_state<Model>, count = Directions::count;
     static constexpr bool moves_summaries = has_summaries<Model> && Directions::keeps_times;
 
@@ -130,66 +74,70 @@ protected:
     }
 };
 
+/// How the functions of a model act on the model and its directions. See `forwarded_hooks`.
 template <class Model, class Directions>
-struct after_event_layer : crossing_layer<Model, Directions> {};
-template <class Model, class Directions>
-requires(has_after_event<Model> ||
-         (has_events<Model> && Directions::keeps_times)) struct after_event_layer<Model, Directions>
-    : crossing_layer<Model, Directions> {
+struct varied_hooks {
+    static constexpr bool after_step_is_generic = has_generic_after_step<Model>,
+                          acts_at_all_events = has_events<Model> && Directions::keeps_times;
+
+    template <class R>
+    MYRIAD_FUNCTION static vec<R, n_event<Model>> events(auto t, const auto& y, const auto& p) {
+        return Model::template events<R>(t, part<n_state<Model>>(y), p);
+    }
+    template <class R>
+    MYRIAD_FUNCTION static vec<R, n_observed<Model>> observe(auto t, const auto& y, const auto& p) {
+        return Model::template observe<R>(t, part<n_state<Model>>(y), p);
+    }
+
+    MYRIAD_FUNCTION static void initialise(auto& wrapped) {
+        detail::move_directions<Model, Directions>(wrapped, [](auto& own) MYRIAD_LAMBDA { Model::initialise(own); });
+    }
+    MYRIAD_FUNCTION static action after_step(auto& wrapped) {
+        action wanted = action::proceed;
+        detail::move_directions<Model, Directions>(
+            wrapped, acting(wanted, [](auto& own) MYRIAD_LAMBDA { return Model::after_step(own); }));
+        return wanted;
+    }
+    template <class R>
+    MYRIAD_FUNCTION static mask_of<R> after_step(auto& wrapped) {
+        mask_of<R> stops = mask_of<R>(false);
+        detail::move_directions<Model, Directions>(wrapped, [&](auto& own) MYRIAD_LAMBDA {
+            if constexpr (std::is_void_v<decltype(Model::template after_step<dual<R>>(own))>) {
+                Model::template after_step<dual<R>>(own);
+            } else {
+                stops = Model::template after_step<dual<R>>(own);
+            }
+        });
+        return stops;
+    }
     MYRIAD_FUNCTION static action after_event(int event, auto& wrapped) {
         using R = std::remove_cvref_t<decltype(wrapped.t)>;
-        const auto dt = crossing_layer<Model, Directions>::template delays<R>(event, wrapped);
+        const auto dt = crossing<Model, Directions>::template delays<R>(event, wrapped);
         action wanted = action::proceed;
         const auto act = [&](auto& own) MYRIAD_LAMBDA {
             if constexpr (has_after_event<Model>)
                 wanted = detail::action_of([&]() MYRIAD_LAMBDA { return Model::after_event(event, own); });
         };
-        if constexpr (Directions::keeps_times) {
-            Directions::cross_at_event(wrapped, dt, [&]() MYRIAD_LAMBDA {
-                return crossing_layer<Model, Directions>::template cross<R>(wrapped, dt, act);
-            });
-        } else {
-            crossing_layer<Model, Directions>::template cross<R>(wrapped, dt, act);
-        }
+        cross<R>(wrapped, dt, act);
         return wanted;
     }
-};
-
-/// A trigger fires where neighbouring solutions reach the surface of the function that has made its condition hold, or
-/// at the time of the action that has.
-template <class Model, class Directions>
-struct after_trigger_layer : after_event_layer<Model, Directions> {};
-template <class Model, class Directions>
-requires has_triggers<Model>
-struct after_trigger_layer<Model, Directions> : after_event_layer<Model, Directions> {
-    static_assert(Directions::keeps_times, "models with triggers have no tangents");
-    static constexpr bool triggers_know_their_function = true;
+    /// A trigger fires where neighbouring solutions reach the surface of the function that has made its condition hold,
+    /// or at the time of the action that has.
     MYRIAD_FUNCTION static action after_trigger_by(int function, int trigger, auto& wrapped) {
+        static_assert(Directions::keeps_times, "models with triggers have no tangents");
         using R = std::remove_cvref_t<decltype(wrapped.t)>;
-        using crossing = crossing_layer<Model, Directions>;
-        const vec<R, Directions::count> dt = function >= 0 ? crossing::template delays<R>(function, wrapped)
-                                                           : Directions::template delays_of_action<R>(wrapped);
+        const vec<R, Directions::count> dt = function >= 0
+                                                 ? crossing<Model, Directions>::template delays<R>(function, wrapped)
+                                                 : Directions::template delays_of_action<R>(wrapped);
         action wanted = action::proceed;
-        Directions::cross_at_event(wrapped, dt, [&]() MYRIAD_LAMBDA {
-            return crossing::template cross<R>(wrapped, dt, [&](auto& own) MYRIAD_LAMBDA {
-                wanted = detail::action_of([&]() MYRIAD_LAMBDA { return Model::after_trigger(trigger, own); });
-            });
-        });
+        cross<R>(wrapped, dt,
+                 acting(wanted, [&](auto& own) MYRIAD_LAMBDA { return Model::after_trigger(trigger, own); }));
         return wanted;
     }
-};
-
-/// Stop times of a neighbouring solution are the same, unless they depend on inputs that differ.
-template <class Model, class Directions>
-struct after_stop_layer : after_trigger_layer<Model, Directions> {};
-template <class Model, class Directions>
-requires has_after_stop<Model>
-struct after_stop_layer<Model, Directions> : after_trigger_layer<Model, Directions> {
+    /// Stop times of a neighbouring solution are the same, unless they depend on inputs that differ.
     MYRIAD_FUNCTION static action after_stop(int stop, int number, auto& wrapped) {
         action wanted = action::proceed;
-        const auto act = [&](auto& own) MYRIAD_LAMBDA {
-            wanted = detail::action_of([&]() MYRIAD_LAMBDA { return Model::after_stop(stop, number, own); });
-        };
+        const auto act = acting(wanted, [&](auto& own) MYRIAD_LAMBDA { return Model::after_stop(stop, number, own); });
         if constexpr (Directions::keeps_times) {
             using R = std::remove_cvref_t<decltype(wrapped.t)>;
             vec<R, Directions::count> dt;
@@ -198,25 +146,41 @@ struct after_stop_layer<Model, Directions> : after_trigger_layer<Model, Directio
                                     stop, number, detail::inputs_along<Model, Directions, i.value, R>(wrapped)))
                             .derivative;
             });
-            Directions::cross_at_event(wrapped, dt, [&]() MYRIAD_LAMBDA {
-                return crossing_layer<Model, Directions>::template cross<R>(wrapped, dt, act);
-            });
+            cross<R>(wrapped, dt, act);
         } else {
             detail::move_directions<Model, Directions>(wrapped, act);
         }
         return wanted;
     }
+    MYRIAD_FUNCTION static void finalise(auto& wrapped) {
+        detail::move_directions<Model, Directions>(wrapped, [](auto& own) MYRIAD_LAMBDA { Model::finalise(own); });
+    }
+
+private:
+    /// Calls a hook of the model and keeps the action that it wants.
+    template <class Hook>
+    MYRIAD_FUNCTION static auto acting(action& wanted, Hook hook) {
+        return [&wanted, hook](auto& own)
+                   MYRIAD_LAMBDA { wanted = detail::action_of([&]() MYRIAD_LAMBDA { return hook(own); }); };
+    }
+    /// Calls an action at a time that is later by dt in neighbouring solutions.
+    template <class R>
+    MYRIAD_FUNCTION static void cross(auto& wrapped, const vec<R, Directions::count>& dt, auto&& act) {
+        const auto crossed = [&]() MYRIAD_LAMBDA {
+            return crossing<Model, Directions>::template cross<R>(wrapped, dt, act);
+        };
+        if constexpr (Directions::keeps_times) {
+            Directions::cross_at_event(wrapped, dt, crossed);
+        } else {
+            crossed();
+        }
+    }
 };
-
-}  // namespace variation_layers
-}  // namespace myriad::detail
-
-namespace myriad::detail {
 
 /// Model with `Directions::count` directions v' = J v + df/dp, among the states after Model's own: v of direction i
 /// begins at n (1 + i).
 template <class Model, class Directions>
-struct with_variations : variation_layers::after_stop_layer<Model, Directions> {
+struct with_variations : forwarded_hooks<Model, varied_hooks<Model, Directions>> {
     static_assert(check_model<Model>());
 
     using original = Model;                                    ///< the model alone
