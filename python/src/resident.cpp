@@ -29,7 +29,7 @@ gpu::result launch_over(const void* kernel, std::int64_t size, void** arguments,
 
 template <class R>
 resident<R>::resident(const library& kernel, const host::called_model<R>& model, const host::solve_call<R>& call)
-    : program_(*kernel.gpu()), source_(model.on_gpu), call_(call.prepared()) {}
+    : program_(*kernel.gpu()), source_(model.on_gpus.front()), call_(call.prepared()) {}
 
 template <class R>
 resident<R>::~resident() {

@@ -3,6 +3,7 @@
 #include "run.hpp"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "compile/loaded_library.hpp"
@@ -14,7 +15,6 @@
 #include "myriad/kernel/methods/method_list.hpp"
 #include "myriad/methods.hpp"
 #include "resident.hpp"
-#include "several_gpus.hpp"
 #include "tape_instances.hpp"
 #include "threads.hpp"
 
@@ -129,7 +129,7 @@ host::called_model<R> called_for(const library& kernel, const named_shape& shape
     }
     made.enter_thread = [&kernel] { current_tape = kernel.model(); };  // what the functions interpret
     if (is_for_gpu) {
-        made.on_gpu = engines_of<R>(*kernel.gpu(), where, o);
+        made.on_gpus.push_back(engines_of<R>(*kernel.gpu(), where, o));
         return made;
     }
     made.on_cpu = {[&kernel](const detail::any_arguments<R>& all, const detail::run_options& how) {
@@ -164,19 +164,17 @@ std::unique_ptr<report<R>> solve(const std::vector<placed_kernel>& on, ensemble<
                                  results_are results) {
     const detail::default_arithmetic here;
     require(!on.empty(), "no device is given");
-    const device& where = on.front().where;
-    const bool on_gpu = where.which() == device::kind::cuda;
-    std::vector<host::called_model<R>> models;
-    for (const placed_kernel& k : on) {
-        models.push_back(called_for<R>(*k.kernel, *instances.shape, k.where, o));
-        models.back().check_kernel(k.where);
-        if (!instances.on_device.empty()) {  // inputs are not here
-            models.back().functions.event_resolution = nullptr;
-            models.back().functions.linearise = nullptr;
-        }
-        require(k.where.which() == where.which(), "the devices are of different kinds");
+    const bool on_gpu = on.front().where.which() == device::kind::cuda;
+    host::called_model<R> model = called_for<R>(*on.front().kernel, *instances.shape, on.front().where, o);
+    if (!instances.on_device.empty()) {  // inputs are not here
+        model.functions.event_resolution = nullptr;
+        model.functions.linearise = nullptr;
     }
-    require(on_gpu || on.size() == 1, "the CPU is named several times");
+    std::vector<device> where{on.front().where};
+    for (const placed_kernel& k : std::span(on).subspan(1)) {
+        where.push_back(k.where);
+        if (on_gpu && k.kernel->gpu() != nullptr) model.on_gpus.push_back(engines_of<R>(*k.kernel->gpu(), k.where, o));
+    }
     require(on_gpu || instances.on_device.empty(), "the sweep has arrays on a GPU, and the device is the CPU",
             host::cure, "copy them, or give device=\"cuda\"");
     require(on.size() == 1 || instances.on_device.empty(),
@@ -186,14 +184,11 @@ std::unique_ptr<report<R>> solve(const std::vector<placed_kernel>& on, ensemble<
     auto& data = instances.data;
     // Samples that stay on the GPU are set here when they are copied: their memory, which may be large, is not touched.
     const bool may_stay = on_gpu && on.size() == 1 && results == results_are::anywhere;
-    host::solve_call<R> call(where, o, models.front(), data, instances.samples, result->records,
+    host::solve_call<R> call(where, o, model, data, instances.samples, result->records,
                              may_stay ? host::new_samples::unset : host::new_samples::cleared);
     try {
-        if (on.size() > 1) {
-            integrate_on_several<R>(on, models, o, data, call, *result);
-        } else if (auto gpu =
-                       may_stay ? std::make_shared<resident<R>>(*on.front().kernel, models.front(), call) : nullptr;
-                   gpu != nullptr && gpu->fits(instances)) {
+        if (auto gpu = may_stay ? std::make_shared<resident<R>>(*on.front().kernel, model, call) : nullptr;
+            gpu != nullptr && gpu->fits(instances)) {
             instances.gpu = result->gpu = gpu;
             gpu->integrate(instances, o, call.check(), *result);
         } else {
@@ -209,9 +204,9 @@ std::unique_ptr<report<R>> solve(const std::vector<placed_kernel>& on, ensemble<
     }
     result->first_state.resize(std::min(result->first_state.size(), used(instances.shape->names.states)));
     result->first_parameter.resize(std::min(result->first_parameter.size(), used(instances.shape->names.parameters)));
-    const detail::tangent_places& tangents = models.front().facts.tangents;
+    const detail::tangent_places& tangents = model.facts.tangents;
     if (instances.gpu != nullptr && !result->interrupted &&
-        host::examines_stiffness<R>(*result, data.size, o, models.front().functions))
+        host::examines_stiffness<R>(*result, data.size, o, model.functions))
         instances.gpu->bring_every(host::examined_stride(data.size));
     if (tangents.n_vectors > 0 && instances.gpu != nullptr && !result->interrupted) {
         const auto bring = [&](const auto* values) {

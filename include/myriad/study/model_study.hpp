@@ -69,7 +69,7 @@ public:
     bool generates_itself() const override { return generate_.calls_model; }
 
     host::called_model<R> called_for(const device& where, const options& o) const override {
-        return host::called_for<Model, Method, R>(where, o);
+        return host::called_for<Model, Method, R>({where}, o);
     }
     std::unique_ptr<instance_memory<R>> allocate(const device&, std::int64_t size) const override {
         return std::make_unique<memory>(size);

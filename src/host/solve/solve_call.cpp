@@ -7,11 +7,14 @@
 #include <exception>
 #include <limits>
 #include <mutex>
+#include <string>
+#include <vector>
 
 #include "myriad/host/checks/consistency.hpp"
 #include "myriad/host/checks/event_tolerances.hpp"
 #include "myriad/host/chunks/chunked_solve.hpp"
 #include "myriad/host/chunks/progress_relay.hpp"
+#include "myriad/host/chunks/several_gpus.hpp"
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/report/stiffness.hpp"
 #include "myriad/host/report/tangent_note.hpp"
@@ -32,9 +35,9 @@ void called_model<R>::check_options(const options& o) const {
 }
 
 template <class R>
-void called_model<R>::check_kernel(const device& where) const {
-    const bool on_cpu = where.which() == device::kind::cpu;
-    require(on_cpu ? this->on_cpu.run != nullptr : on_gpu.make != nullptr,
+void called_model<R>::check_kernel(device::kind which) const {
+    const bool on_cpu = which == device::kind::cpu;
+    require(on_cpu ? this->on_cpu.run != nullptr : !on_gpus.empty(),
             "this model was not instantiated for this method and real type", on_cpu ? "" : " on CUDA devices",
             ", or with other numbers of components, or its source file was not linked", cure,
             "write MYRIAD_INSTANTIATE(model, method) (MYRIAD_INSTANTIATE_FLOAT for float) in the model's source "
@@ -96,6 +99,13 @@ template struct called_model<float>;
 
 namespace {
 
+/// "cuda:0, cuda:1".
+std::string names_of(const std::vector<device>& all) {
+    std::string names;
+    for (const device& d : all) names += (names.empty() ? "" : ", ") + d.name();
+    return names;
+}
+
 /// Sorting by cost gives all instances one phase before it gives any the others. A progress function that throws may
 /// stop the call between the two, where no kernel ends the instances that have begun.
 template <class R>
@@ -127,43 +137,46 @@ private:
 }  // namespace
 
 template <class R>
-ensemble_data<R>& solve_call<R>::checked(const device& where, const options& o, const called_model<R>& model,
-                                         ensemble_data<R>& data) {
+ensemble_data<R>& solve_call<R>::checked(const std::vector<device>& where, const options& o,
+                                         const called_model<R>& model, ensemble_data<R>& data) {
+    require(!where.empty(), "no device is given");
+    for (const device& d : where)
+        require(where.size() == 1 || d.which() == device::kind::cuda, "the devices are ", names_of(where),
+                ", and several devices of a call must be GPUs");
     model.check_options(o);
-    model.check_kernel(where);
+    model.check_kernel(where.front().which());
     return data;
 }
 
 template <class R>
-solve_call<R>::solve_call(const device& where, const options& o, const called_model<R>& model, ensemble_data<R>& data,
-                          sample_data<R>& samples, record_data<R>& records, new_samples are)
+solve_call<R>::solve_call(const std::vector<device>& where, const options& o, const called_model<R>& model,
+                          ensemble_data<R>& data, sample_data<R>& samples, record_data<R>& records, new_samples are)
     : where_(where), options_(o), model_(model), data_(data), claim_(data.take()),
       left_(model.check_uses(checked(where, o, model, data), o, data.size)),
       check_(model.values_of(data, o, data.size)) {
     left_.require_for(0, o.phases);
     // On a GPU the data of large ensembles are checked chunk by chunk, while the GPU works on others.
-    if (where.which() == device::kind::cpu || data.size <= worth_chunks) check_.run();
+    if (is_on_cpu() || data.size <= worth_chunks) check_.run();
     data.expect_phases(o.phases);
     prepared_ = std::make_shared<prepared_call<R>>(data, samples, records, o, model.facts, are);
 }
 
 template <class R>
 void solve_call<R>::integrate(report_of<R>& result) {
-    const device& where = where_;
     const options& o = options_;
     ensemble_data<R>& instances = data_;
     progress_relay relay{o.progress, instances.size, nullptr};
     relay.deadline = progress_relay::deadline_in(o.time_limit);
-    const phases_done_before<R> before(o, instances, where.which() != device::kind::cpu);
+    const phases_done_before<R> before(o, instances, !is_on_cpu());
     const auto begin = std::chrono::steady_clock::now();
-    if (where.which() == device::kind::cpu) {
+    if (is_on_cpu()) {
         const auto work = [&] {
             return o.counting == counting::on ? counted_work(instances, instances.size) : work_count{};
         };
         const auto work_before = work();
         instances.untouched = false;
         run_options how;
-        how.threads = where.threads();
+        how.threads = where_.front().threads();
         how.schedule = o.schedule;
         how.progress = &progress_relay::call;
         if (relay.may_stop()) how.stop = &progress_relay::ask;
@@ -177,12 +190,16 @@ void solve_call<R>::integrate(report_of<R>& result) {
         set_work(result, work_before, work());
         summarise(instances, result, instances.size);
     } else {
-        solve_in_chunks(o, model_.on_gpu, arguments(), instances, check_, relay, result);
+        if (model_.on_gpus.size() == 1) {
+            solve_in_chunks(o, model_.on_gpus.front(), arguments(), instances, check_, relay, result);
+        } else {
+            solve_on_several_gpus(o, model_.on_gpus, arguments(), instances, check_, relay, result);
+        }
         if (relay.failure) before.leave_those_begun(instances);
     }
     note_ended(result, instances, instances.size);
     instances.remember_ended();
-    end_call(result, instances, o, arguments().max_steps, where.name(), begin, relay.failure);
+    end_call(result, instances, o, arguments().max_steps, names_of(where_), begin, relay.failure);
 }
 
 template <class R>

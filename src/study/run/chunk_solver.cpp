@@ -116,7 +116,7 @@ report_of<R> host_instances<R>::solve(const device& where, const options& o) {
     const detail::default_arithmetic here;
     const host::called_model<R> model = model_.called_for(where, o);
     report_of<R> made;
-    host::solve_call<R> call(where, o, model, data(), samples(), records_);
+    host::solve_call<R> call({where}, o, model, data(), samples(), records_);
     call.integrate(made);
     call.add_notes(made);
     return made;

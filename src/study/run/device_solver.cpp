@@ -47,12 +47,12 @@ device_instances<R>::device_instances(const studied_model<R>& model, const devic
                                       std::int64_t few)
     : options_(model.options_for(where, plan.asked.options)), model_(model.called_for(where, options_)),
       few_(model, where, few), call_(with_domains(plan.asked.axes), few_.samples(), records_, options_, model_.facts) {
-    model_.check_kernel(where);
-    engine_ = model_.on_gpu.take();
+    model_.check_kernel(where.which());
+    engine_ = model_.on_gpus.front().take();
 }
 template <class R>
 device_instances<R>::~device_instances() {
-    if (fine_) model_.on_gpu.give(std::move(engine_));
+    if (fine_) model_.on_gpus.front().give(std::move(engine_));
 }
 
 template <class R>

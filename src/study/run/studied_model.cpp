@@ -15,7 +15,7 @@ void studied_model<R>::check(const device& where, const options& o) const {
     const options as_called = options_for(where, o);
     const host::called_model<R> model = called_for(where, as_called);
     model.check_options(as_called);
-    model.check_kernel(where);
+    model.check_kernel(where.which());
 }
 template <class R>
 std::unique_ptr<chunk_solver> studied_model<R>::make_solver(const study_plan& plan, const device& where) const {

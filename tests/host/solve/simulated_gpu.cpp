@@ -52,7 +52,10 @@ bool is_pinned(const void* place) {
 
 namespace myriad::cuda {
 
-std::vector<device_facts> list_devices(std::string&) { return {{"simulated GPU", simulated::the_gpu.memory, 1, 90}}; }
+std::vector<device_facts> list_devices(std::string&) {
+    const device_facts each{"simulated GPU", simulated::the_gpu.memory, 1, 90};
+    return {each, each, each};
+}
 
 void pin_memory(int, void* memory, std::size_t bytes) {
     simulated::the_gpu.meet(simulated::call::pin);

@@ -36,6 +36,7 @@ using swings = myriad::ensemble<swing>;
 namespace {
 
 const myriad::device gpu = myriad::device::cuda(), cpu = myriad::device::cpu(1);
+const std::vector<myriad::device> one_gpu{gpu}, gpus{myriad::device::cuda(2), gpu, myriad::device::cuda(1)};
 
 /// Every hundredth instance ends itself in its second phase.
 void fill(drifts& e) {
@@ -80,14 +81,15 @@ void check_same(const Report& a, const Report& b) {
     CHECK(same_values(a.records.time(), b.records.time()));
 }
 
-/// Two calls on the simulated GPU, randomly delayed, and two on the CPU; the first ones mark instance `bad`.
+/// Two calls on simulated GPUs, randomly delayed, and two on the CPU; the first ones mark instance `bad`.
 template <class Method, class Ensemble>
-void check_against_cpu(std::int64_t size, const myriad::options& o, std::int64_t bad, bool pinned) {
+void check_against_cpu(std::int64_t size, const myriad::options& o, std::int64_t bad, bool pinned,
+                       const std::vector<myriad::device>& on = one_gpu) {
     auto here = filled<Ensemble>(size), there = filled<Ensemble>(size);
     if (pinned) here.pin(gpu);
     for (auto* const e : {&here, &there}) e->parameter(0)(bad) = std::numeric_limits<double>::quiet_NaN();
     for (int i = 0; i < 2; ++i) {
-        const auto report = myriad::solve<Method>(gpu, here, o);
+        const auto report = myriad::solve<Method>(on, here, o);
         check_same(report, myriad::solve<Method>(cpu, there, o));
         CHECK(report.kernel_seconds > 0);
         CHECK(report.kernel_seconds < report.seconds);
@@ -127,22 +129,23 @@ TEST_CASE("whatever the sizes, chunks, methods and delays, a simulated GPU gives
         the_gpu.seed = static_cast<std::uint64_t>(turn);
         the_gpu.longest_delay = turn % 4 == 0 ? 0 : 200;
         const bool many = turn % 16 == 7, pinned = up_to(2) == 1;
+        const auto& on = turn % 5 == 2 ? gpus : one_gpu;
         const std::int64_t size = many ? 131'072 + up_to(100'000) : up_to(500), bad = up_to(size) - 1;
         auto o = usual();
         o.invalid_instances = myriad::invalid_instances::mark;
         o.chunk_size = 1 + size / up_to(10);
         o.counting = up_to(3) == 1 ? myriad::counting::off : myriad::counting::on;
         o.record = {.states = {0}, .time = true};
-        CAPTURE(turn, size, o.chunk_size, bad, pinned);
+        CAPTURE(turn, size, o.chunk_size, bad, pinned, on.size());
         if (many) {
             o.events = {};
             o.step = 1;
-            check_against_cpu<runge_kutta_4, drifts>(size, o, bad, pinned);
+            check_against_cpu<runge_kutta_4, drifts>(size, o, bad, pinned, on);
         } else if (turn % 2 == 0) {
-            check_against_cpu<cash_karp, swings>(size, o, bad, pinned);
+            check_against_cpu<cash_karp, swings>(size, o, bad, pinned, on);
         } else {
             o.samples = {.states = {swing::x}, .capacity = 60, .evenly = 10};
-            check_against_cpu<myriad::dense<myriad::tsitouras_5>, swings>(size, o, bad, pinned);
+            check_against_cpu<myriad::dense<myriad::tsitouras_5>, swings>(size, o, bad, pinned, on);
         }
     }
     the_gpu.longest_delay = 0;
@@ -190,6 +193,46 @@ TEST_CASE("an error at any call is that of solve, nothing stays at work, and wha
             CHECK(same_results(e, expected));
         }
     }
+}
+
+TEST_CASE(
+    "a call on several GPUs ends with the error of one of them, or of the progress function, and begins no more") {
+    auto o = two_phases(10);
+    for (const call kind : {call::upload, call::integrate, call::kernel, call::download, call::wait}) {
+        CAPTURE(static_cast<int>(kind));
+        auto e = filled<drifts>(700);
+        the_gpu.fail(kind, 4);
+        CHECK(error_of([&] { myriad::solve<runge_kutta_4>(gpus, e, o); }) == "the simulated GPU failed");
+        CHECK(the_gpu.under_way == 0);
+        the_gpu.fail(call::none, 0);
+    }
+    the_gpu.longest_delay = 2000;
+    auto e = filled<drifts>(2000), expected = filled<drifts>(2000);
+    o.progress = [](std::int64_t done, std::int64_t) {
+        if (done > 0) throw std::runtime_error("enough");
+    };
+    CHECK_THROWS_WITH(myriad::solve<runge_kutta_4>(gpus, e, o), "enough");
+    the_gpu.longest_delay = 0;
+    const std::int64_t done = (e.phases_done() == 2).count();
+    CHECK((done > 0 && done < 2000));
+    o.progress = nullptr;
+    e.restart();
+    fill(e);
+    const auto report = myriad::solve<runge_kutta_4>(gpus, e, o);
+    CHECK(report.device == "cuda:2, cuda:0, cuda:1");
+    myriad::solve<runge_kutta_4>(cpu, expected, o);
+    CHECK(same_results(e, expected));
+}
+
+TEST_CASE("several devices of a call are GPUs, and at least one is given") {
+    auto e = filled<drifts>(2);
+    const auto said = [&](const std::vector<myriad::device>& on) {
+        return error_of([&] { myriad::solve<runge_kutta_4>(on, e, two_phases(1)); });
+    };
+    CHECK(said({gpu, cpu}) == "the devices are cuda:0, cpu:1, and several devices of a call must be GPUs");
+    CHECK(said({cpu, cpu}) == "the devices are cpu:1, cpu:1, and several devices of a call must be GPUs");
+    CHECK(said({}) == "no device is given");
+    CHECK(is_as_filled(e));
 }
 
 TEST_CASE("too little memory for one of three chunks is an error that leaves the ensemble as it was") {

@@ -2,6 +2,8 @@
 // The one-shot call: checks everything once, passes the ensemble to the device's backend, and reports.
 #pragma once
 
+#include <vector>
+
 #include "myriad/host/backend/backend.hpp"
 #include "myriad/host/backend/cpu_kernel.hpp"
 #include "myriad/host/backend/device.hpp"
@@ -43,14 +45,16 @@ called_model<R> called() {
     made.functions.check_jacobian = &check_jacobians<Model, Method, R>;
     return made;
 }
-/// The same with the kernel for that device.
+/// The same with the kernels for those devices.
 template <class Model, class Method, class R>
-called_model<R> called_for(const device& where, const options& o) {
+called_model<R> called_for(const std::vector<device>& where, const options& o) {
     called_model<R> made = called<Model, Method, R>();
-    if (where.which() == device::kind::cpu) {
-        made.on_cpu = choose_cpu_kernel<Model, Method, R>();
-    } else if (const auto make = if_defined(&cuda::make_engine<Model, Method, R>)) {
-        made.on_gpu = {reinterpret_cast<engine_key>(make), make, engine_options_for(where, o)};
+    for (const device& d : where) {
+        if (d.which() == device::kind::cpu) {
+            made.on_cpu = choose_cpu_kernel<Model, Method, R>();
+        } else if (const auto make = if_defined(&cuda::make_engine<Model, Method, R>)) {
+            made.on_gpus.push_back({reinterpret_cast<engine_key>(make), make, engine_options_for(d, o)});
+        }
     }
     return made;
 }
@@ -67,6 +71,12 @@ called_model<R> called_for(const device& where, const options& o) {
 /// call for transients: how instances ended is kept in the ensemble.
 template <class Method, class Model, class R>
 report<Model, R> solve(const device& where, ensemble<Model, R>& instances, const options& options = {}) {
+    return solve<Method>(std::vector{where}, instances, options);
+}
+/// The same on several GPUs, each of which takes the next part of the instances whenever it has done one. The results
+/// are those of one of them, whatever the parts.
+template <class Method, class Model, class R>
+report<Model, R> solve(const std::vector<device>& where, ensemble<Model, R>& instances, const options& options = {}) {
     const detail::default_arithmetic here;
     const auto model = host::called_for<Model, Method, R>(where, options);
     report<Model, R> result;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <vector>
 
 #include "myriad/host/backend/cpu_kernel.hpp"
 #include "myriad/host/backend/device.hpp"
@@ -31,8 +32,8 @@ struct called_model {
     const model_components* components;
     call_facts facts;
     instance_functions<R> functions;
-    cpu_kernel<R> on_cpu = {};     ///< of a call on the CPU; without a function if there is none
-    engine_source<R> on_gpu = {};  ///< the same for a GPU
+    cpu_kernel<R> on_cpu = {};                   ///< of a call on the CPU; without a function if there is none
+    std::vector<engine_source<R>> on_gpus = {};  ///< of a call on GPUs, for each of them
     /// Called in threads before they call the functions, if it is not empty.
     std::function<void()> enter_thread = {};
 
@@ -42,8 +43,8 @@ struct called_model {
     }
     /// Throws `error` if an option is invalid.
     void check_options(const options& o) const;
-    /// Throws `error` if the program has no kernel for the device, or may not use it.
-    void check_kernel(const device& where) const;
+    /// Throws `error` if the program has no kernel for devices of that kind, or may not use them.
+    void check_kernel(device::kind which) const;
     /// Bytes of memory that an instance and a call for it take.
     double bytes_per_instance(const options& o) const;
     /// Checks the options against the first `count` instances: sample times, event tolerances, Jacobians. Throws
@@ -67,12 +68,12 @@ extern template struct called_model<float>;
 template <class R>
 class solve_call {
 public:
-    /// Takes the ensemble for this call, checks all that can be checked before the integration, and prepares it. Throws
-    /// `error`. All arguments must outlive the call.
-    solve_call(const device& where, const options& o, const called_model<R>& model, ensemble_data<R>& data,
+    /// Takes the ensemble for this call on one device or on several GPUs, checks all that can be checked before the
+    /// integration, and prepares it. Throws `error`. All other arguments must outlive the call.
+    solve_call(const std::vector<device>& where, const options& o, const called_model<R>& model, ensemble_data<R>& data,
                sample_data<R>& samples, record_data<R>& records, new_samples are = new_samples::cleared);
 
-    /// Integrates on the device, and reports. Throws `error` if an input is invalid, and what the progress function
+    /// Integrates on the devices, and reports. Throws `error` if an input is invalid, and what the progress function
     /// throws.
     void integrate(report_of<R>& result);
     /// Adds the notes that follow from what is left in the ensemble; of a call that was `cut_short`, only the others.
@@ -84,10 +85,11 @@ public:
 
 private:
     /// The ensemble, once the options are checked.
-    static ensemble_data<R>& checked(const device& where, const options& o, const called_model<R>& model,
+    static ensemble_data<R>& checked(const std::vector<device>& where, const options& o, const called_model<R>& model,
                                      ensemble_data<R>& data);
+    bool is_on_cpu() const { return where_.front().which() == device::kind::cpu; }
 
-    const device& where_;
+    const std::vector<device> where_;
     const options& options_;
     const called_model<R>& model_;
     ensemble_data<R>& data_;

@@ -48,11 +48,11 @@ public:
     /// Allocates all memory, on the host and on the device. Throws `error` if there is too little, if an option is
     /// invalid, or if the device or a kernel for it does not exist.
     solver(const device& where, std::int64_t capacity, options o = {})
-        : where_(where), options_(std::move(o)), model_(host::called_for<Model, Method, R>(where, options_)),
+        : where_(where), options_(std::move(o)), model_(host::called_for<Model, Method, R>({where}, options_)),
           instances_(checked(capacity)),
           prepared_(data(), host::ensemble_access::samples(instances_), records_.data(), options_, model_.facts) {
         if (where.which() == device::kind::cpu) return;
-        engine_ = model_.on_gpu.make(model_.on_gpu.how);
+        engine_ = model_.on_gpus.front().make(model_.on_gpus.front().how);
         instances_.pin(where);
         prepared_.pin(where.number());
         records_.pin(where.number());
@@ -290,7 +290,7 @@ private:
         host::add_memory_of_call<R>(need, *model_.shape, capacity, nullptr, false, o, model_.facts);
         need.check(message("a solver for ", capacity, " instances"),
                    "give it a smaller capacity, and integrate part by part");
-        model_.check_kernel(where_);
+        model_.check_kernel(where_.which());
         return capacity;
     }
     host::work_count counted_work() {

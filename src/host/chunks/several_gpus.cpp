@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Calls on several GPUs.
-#include "several_gpus.hpp"
+// `solve` on several GPUs.
+#include "myriad/host/chunks/several_gpus.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -15,10 +15,8 @@
 
 #include "myriad/host/chunks/chunk_pipeline.hpp"
 #include "myriad/host/chunks/chunk_plan.hpp"
-#include "myriad/host/chunks/progress_relay.hpp"
-#include "myriad/host/core/error.hpp"
 
-namespace myriad::python {
+namespace myriad::host::inline MYRIAD_ABI {
 
 namespace {
 
@@ -30,7 +28,7 @@ struct parts_of_call {
     const cuda::past past;
     std::int64_t part = 1;                       // instances of a part
     std::atomic<std::int64_t> next{0}, done{0};  // instances
-    std::atomic<detail::stop_request> asked{detail::stop_request::none};
+    std::atomic<stop_request> asked{stop_request::none};
     std::atomic<bool> stopped{false};
 
     std::mutex mutex;
@@ -46,9 +44,8 @@ struct parts_of_call {
 template <class R>
 class gpu_worker {
 public:
-    gpu_worker(const host::called_model<R>& model, const detail::any_arguments<R>& arguments, const options& o,
-               parts_of_call& all)
-        : all_(all), pipeline_(model.on_gpu, arguments), plan_(o, arguments, pipeline_.first()) {}
+    gpu_worker(const engine_source<R>& source, const any_arguments<R>& arguments, const options& o, parts_of_call& all)
+        : all_(all), pipeline_(source, arguments), plan_(o, arguments, pipeline_.first()) {}
 
     /// Instances of the largest part that it takes.
     std::int64_t largest() const { return plan_.largest(); }
@@ -87,60 +84,43 @@ public:
 
 private:
     parts_of_call& all_;
-    host::chunk_pipeline<R> pipeline_;
-    host::chunk_plan plan_;
+    chunk_pipeline<R> pipeline_;
+    chunk_plan plan_;
 };
-
-}  // namespace
-
-std::string names_of(const std::vector<placed_kernel>& on) {
-    std::string names;
-    for (const placed_kernel& k : on) names += (names.empty() ? "" : ", ") + k.where.name();
-    return names;
-}
-
-namespace {
 
 /// Ends the instances of parts that were not begun as they are.
 template <class R>
-void leave(host::ensemble_data<R>& data, parts_of_call& all) {
+void leave(ensemble_data<R>& data, parts_of_call& all) {
     for (std::int64_t first = all.next; first < all.size; first += all.part) all.left.push_back(first);
     for (const std::int64_t first : all.left)
         for (std::int64_t i = first; i < std::min(first + all.part, all.size); ++i) data.leave(i);
 }
 
-}  // namespace
-
 template <class R>
-void integrate_on_several(const std::vector<placed_kernel>& on, const std::vector<host::called_model<R>>& models,
-                          const options& o, host::ensemble_data<R>& data, host::solve_call<R>& call,
-                          report_of<R>& result) {
-    const auto begin = std::chrono::steady_clock::now();
-    const auto deadline = host::progress_relay::deadline_in(o.time_limit);
-    if (!call.check().passes(0, data.size)) call.check().run();
-    const host::work_count before = data.untouched ? host::work_count{} : host::counted_work(data, data.size);
-    parts_of_call all(data.size, data.untouched ? cuda::past::none : cuda::past::kept);
+void share_out(const options& o, const std::vector<engine_source<R>>& sources, const any_arguments<R>& arguments,
+               ensemble_data<R>& instances, data_check<R>& check, progress_relay& relay, report_of<R>& result) {
+    const std::int64_t size = instances.size;
+    if (!check.passes(0, size)) check.run();
+    const auto work = [&] { return o.counting == counting::on ? counted_work(instances, size) : work_count{}; };
+    const work_count work_before = instances.untouched ? work_count{} : work();
+    parts_of_call all(size, instances.untouched ? cuda::past::none : cuda::past::kept);
     std::vector<std::unique_ptr<gpu_worker<R>>> workers;
-    for (const auto& m : models) workers.push_back(std::make_unique<gpu_worker<R>>(m, call.arguments(), o, all));
+    for (const auto& source : sources) workers.push_back(std::make_unique<gpu_worker<R>>(source, arguments, o, all));
     // As many for each GPU as on one alone, so that the faster ones take more of them, but none too small.
     constexpr std::int64_t worth_a_part = 65'536, most = 8;
-    const auto gpus = static_cast<std::int64_t>(on.size());
-    const std::int64_t parts = gpus * std::clamp<std::int64_t>(data.size / (gpus * worth_a_part), 1, most);
-    std::int64_t part = (data.size + parts - 1) / parts;
-    for (const auto& w : workers) part = std::min(part, w->largest());
-    all.part = part;
-    all.next = gpus * part;  // each has one to begin with
+    const auto gpus = static_cast<std::int64_t>(sources.size());
+    const std::int64_t parts = gpus * std::clamp<std::int64_t>(size / (gpus * worth_a_part), 1, most);
+    all.part = (size + parts - 1) / parts;
+    for (const auto& w : workers) all.part = std::min(all.part, w->largest());
+    all.next = gpus * all.part;  // each has one to begin with
 
-    data.untouched = false;
-    host::progress_relay relay{o.progress, data.size, nullptr};
-    relay.deadline = deadline;
-    relay.last_call = begin;
+    instances.untouched = false;
     std::vector<std::thread> threads;
     try {
         for (std::size_t w = 0; w < workers.size(); ++w) {
             const std::lock_guard lock(all.mutex);
             threads.emplace_back(
-                [&one = *workers[w], first = static_cast<std::int64_t>(w) * part] { one.work(first); });
+                [&one = *workers[w], first = static_cast<std::int64_t>(w) * all.part] { one.work(first); });
             ++all.working;
         }
     } catch (...) {
@@ -154,30 +134,36 @@ void integrate_on_several(const std::vector<placed_kernel>& on, const std::vecto
             all.changed.wait_for(lock, std::chrono::milliseconds{20});
             lock.unlock();
             const std::int64_t done = all.done;
-            if (done < data.size) relay.last_done = done;
-            all.asked = host::progress_relay::ask(&relay);
-            if (all.asked != detail::stop_request::none) all.stopped = true;
+            if (done < size) relay.last_done = done;
+            all.asked = progress_relay::ask(&relay);
+            if (all.asked != stop_request::none) all.stopped = true;
             lock.lock();
         }
     }
     for (std::thread& t : threads) t.join();
     if (all.failure) std::rethrow_exception(all.failure);
-    if (relay.over) leave(data, all);
-    if (all.done == data.size || relay.over) host::progress_relay::call(&relay, data.size);
+    if (relay.over) leave(instances, all);
+    if (all.done == size || relay.over) progress_relay::call(&relay, size);
 
-    host::summarise(data, result, data.size);
-    host::set_work(result, before, host::counted_work(data, data.size));
+    summarise(instances, result, size);
+    if (o.counting == counting::on) set_work(result, work_before, work());
     result.kernel = all.facts;
     result.kernel_seconds = all.kernel_seconds;
-    host::note_ended(result, data, data.size);
-    data.remember_ended();
-    host::end_call(result, data, o, call.arguments().max_steps, names_of(on), begin, relay.failure);
 }
-template void integrate_on_several(const std::vector<placed_kernel>&, const std::vector<host::called_model<double>>&,
-                                   const options&, host::ensemble_data<double>&, host::solve_call<double>&,
-                                   report_of<double>&);
-template void integrate_on_several(const std::vector<placed_kernel>&, const std::vector<host::called_model<float>>&,
-                                   const options&, host::ensemble_data<float>&, host::solve_call<float>&,
-                                   report_of<float>&);
 
-}  // namespace myriad::python
+}  // namespace
+
+template <class R>
+void solve_on_several_gpus(const options& o, const std::vector<engine_source<R>>& sources,
+                           const any_arguments<R>& arguments, ensemble_data<R>& instances, data_check<R>& check,
+                           progress_relay& relay, report_of<R>& result) {
+    share_out(o, sources, arguments, instances, check, relay, result);
+}
+template void solve_on_several_gpus(const options&, const std::vector<engine_source<double>>&,
+                                    const any_arguments<double>&, ensemble_data<double>&, data_check<double>&,
+                                    progress_relay&, report_of<double>&);
+template void solve_on_several_gpus(const options&, const std::vector<engine_source<float>>&,
+                                    const any_arguments<float>&, ensemble_data<float>&, data_check<float>&,
+                                    progress_relay&, report_of<float>&);
+
+}  // namespace myriad::host::inline MYRIAD_ABI
