@@ -256,3 +256,22 @@ def test_pulses_of_coupled_units_are_exact_and_stay_units():
     run = my.solve(model, {k: rates, **{start[i]: 1.0 + i / 8 for i in range(40)}}, start={a: 0}, time=(0, 20), **tight)
     for i in (0, 17, 39):
         np.testing.assert_allclose(run[f"a_{i}"], after([1 + i / 8], 20), rtol=1e-9)
+
+
+@pytest.mark.parametrize("rate, span, right", [
+    (where(t > 0, my.sin(t) / t, 1.0), (0, 1), 0.946083070367183),
+    (where(t != 0, my.sin(t) / t, 1.0), (-1, 1), 2 * 0.946083070367183),
+    (where(t == 0, 1.0, my.sin(t) / t), (1, 0), -0.946083070367183),
+    (where(t > T, (t - T) * my.log(t - T), 0.0), (0, 2), -0.25),
+    (where(t % 1 > 0, (t % 1) * my.log(t % 1), 0.0), (0, 3), -0.75),
+    (where(clock + 1 > 0, my.sin(clock + 1) / (clock + 1), 1.0), (0, 1), 0.946083070367183)])
+def test_at_the_very_time_of_a_jump_a_guard_keeps_out_what_has_no_value_there(rate, span, right):
+    model = my.model({x: rate + 0.0 * T, clock: 1.0})
+    run = my.solve(model, {T: [1.0]}, start={x: 0, clock: -1}, time=span, rtol=1e-8, interpreted=True)
+    assert run.status[0] == "success"
+    assert abs(run[x][0] - right) < 1e-6
+
+
+@pytest.mark.parametrize("rate", [where(t >= 0, my.sin(t) / t, 1.0), where(t > 0, my.log(-1 - t), 1.0)])
+def test_what_has_no_value_where_its_condition_holds_is_not_guarded(rate):
+    assert my.solve(my.model({x: rate}), size=1, start={x: 0}, time=(0, 1), interpreted=True).status[0] == "not_finite"

@@ -24,6 +24,9 @@ _whole = "floor", "rint", "floor_divide", *_remainders
 kinked = "abs", "min", "max"
 _waves = {"sin": (math.pi, fn.asin), "cos": (math.pi, fn.acos), "sinpi": (1.0, fn.asin), "cospi": (1.0, fn.acos)}
 
+_partly_defined = ("divide", "reciprocal", "rsqrt", "sqrt", "log", "log1p", "log2", "log10", "pow", "powr", "asin",
+                   "acos")
+
 _one = constant(1.0)
 
 Form = dict[Any, Any]  #: a sum: coefficients by what they multiply, which is 1, the time, or a function of time
@@ -66,6 +69,11 @@ class JumpTimes:
         """Whether time and what changes at actions alone decide an expression."""
         return self._has_time(node) and all(s is sym.time or s in self._clocks or self._is_still(s)
                                             for s in symbols_of([node]))
+
+    def may_be_undefined(self, node: Any) -> bool:
+        """Whether there may be times at which an expression has no finite value because of the time itself."""
+        return any(self._has_time(argument) for one in walk([node]) if one.op in _partly_defined
+                   for argument in one.args[one.op == "divide":])
 
     def _has_time(self, node: Any) -> bool:
         return any(s is sym.time or s in self._clocks for s in symbols_of([node]))

@@ -107,8 +107,21 @@ class TimeSwitches:
             between |= {whole: inside[whole]} if whole is not None else inside
         self.located = {node for node, several in found.items() if several is not None}
         if self.switches:
-            jumping = replaced(jumping, between)
+            conditions = {node.args[0] for node in walk(jumping) if node.op == "select"}
+            as_written = dict(zip(replaced(list(conditions), between), conditions))
+            jumping = rebuilt(replaced(jumping, between), lambda node: self._guarded(node, as_written))
             self.equations, self.quantities = dict(zip(states, jumping)), jumping[len(states):]
+
+    def _guarded(self, node: Any, as_written: Mapping[Any, Any]) -> Any:
+        """A choice that a switch makes, as `where(t > 0, sin(t) / t, 1)`: at the very time of a jump, where the part
+        chosen may have no value that is finite, the condition as it was written decides."""
+        if node.op != "select" or (condition := as_written.get(node.args[0], node.args[0])) is node.args[0]:
+            return node
+        parts = node.args[1:]
+        if not any(self.times_of.may_be_undefined(part) for part in parts):
+            return node
+        is_finite = compare("less", ex.abs(node), constant(math.inf))
+        return choose(is_finite, node, choose(condition, *parts))
 
     @property
     def at_start(self) -> dict[Any, Any]:
