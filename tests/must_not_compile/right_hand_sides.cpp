@@ -17,6 +17,10 @@
 // expect: rhs has a wrong signature: it must be
 // case: rhs_with_the_inputs_before_the_states
 // expect: the arguments of rhs are exchanged: they are the time, the states and the inputs, in this order
+// case: rhs_with_a_single_state_before_the_time
+// expect: the arguments of rhs are exchanged: they are the time, the states and the inputs, in this order
+// case: rhs_with_a_single_state_first_and_the_time_last
+// expect: the arguments of rhs are exchanged: they are the time, the states and the inputs, in this order
 // case: rhs_with_the_inputs_before_the_states_of_any_type
 // expect: a state is looked for among the inputs: the arguments of rhs, events and observe are the time, the states
 // case: sine_of_the_standard_library
@@ -74,6 +78,16 @@ private:
 #elif defined CASE_rhs_with_the_inputs_before_the_states
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, 1> rhs(auto, const auto& p, const myriad::vec<R, 1>& y) {
+        return myriad::vec<R, 1>{-(p[k] * y[x])};
+    }
+#elif defined CASE_rhs_with_a_single_state_before_the_time
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, 1> rhs(const myriad::vec<R, 1>& y, auto, const auto& p) {
+        return myriad::vec<R, 1>{-(p[k] * y[x])};
+    }
+#elif defined CASE_rhs_with_a_single_state_first_and_the_time_last
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, 1> rhs(myriad::vec<R, 1> y, const auto& p, auto) {
         return myriad::vec<R, 1>{-(p[k] * y[x])};
     }
 #elif defined CASE_rhs_with_the_inputs_before_the_states_of_any_type

@@ -40,19 +40,34 @@ concept hook_result = std::is_void_v<T> || std::same_as<T, action>;
         [[maybe_unused]] decltype(call)* what_the_compiler_says; \
     }
 
+#define MYRIAD_REFUSE_ORDER(name, is_another)                                                                    \
+    static_assert(!(is_another), "the arguments of " #name                                                       \
+                                 " are exchanged: they are the time, the states and the inputs, in this order, " \
+                                 "`auto t, const myriad::vec<R, n_state>& y, const auto& p`");
 // Refuses a function of time, states and inputs whose arguments are in another order. Only where the call fails: to try
 // another order compiles the body of a function whose type of return is deduced.
-#define MYRIAD_CHECK_ORDER(name)                                                                      \
-    if constexpr (!requires { Model::template name<R>(R{}, *y, *p); }) {                              \
-        constexpr bool takes_another_order = requires { Model::template name<R>(*y, R{}, *p); }       \
-        || requires { Model::template name<R>(R{}, *p, *y); }                                         \
-        || requires { Model::template name<R>(*y, *p, R{}); }                                         \
-        || requires { Model::template name<R>(*p, R{}, *y); }                                         \
-        || requires { Model::template name<R>(*p, *y, R{}); };                                        \
-        static_assert(!takes_another_order,                                                           \
-                      "the arguments of " #name                                                       \
-                      " are exchanged: they are the time, the states and the inputs, in this order, " \
-                      "`auto t, const myriad::vec<R, n_state>& y, const auto& p`");                   \
+#define MYRIAD_CHECK_ORDER(name)                                                                \
+    if constexpr (!requires { Model::template name<R>(R{}, *y, *p); }) {                        \
+        constexpr bool takes_another_order = requires { Model::template name<R>(*y, R{}, *p); } \
+        || requires { Model::template name<R>(R{}, *p, *y); }                                   \
+        || requires { Model::template name<R>(*y, *p, R{}); }                                   \
+        || requires { Model::template name<R>(*p, R{}, *y); }                                   \
+        || requires { Model::template name<R>(*p, *y, R{}); };                                  \
+        MYRIAD_REFUSE_ORDER(name, takes_another_order)                                          \
+    }
+// The same where a call does not fail, as a number is taken for the vector of a single state: by the parameters' types.
+#define MYRIAD_HAS_PARAMETERS(name, result, ...) \
+    requires { static_cast<result (*)(__VA_ARGS__)>(&Model::template name<R>); }
+#define MYRIAD_CHECK_ORDER_OF_ONE(name, result)                                                             \
+    if constexpr (n_state<Model> == 1) {                                                                    \
+        using state = vec<R, 1>;                                                                            \
+        using given = inputs<Model, R>;                                                                     \
+        constexpr bool as_told = MYRIAD_HAS_PARAMETERS(name, result, R, const state&, const given&);        \
+        constexpr bool states_first = MYRIAD_HAS_PARAMETERS(name, result, const state&, R, const given&) || \
+                                      MYRIAD_HAS_PARAMETERS(name, result, state, R, const given&) ||        \
+                                      MYRIAD_HAS_PARAMETERS(name, result, const state&, const given&, R) || \
+                                      MYRIAD_HAS_PARAMETERS(name, result, state, const given&, R);          \
+        MYRIAD_REFUSE_ORDER(name, states_first && !as_told)                                                 \
     }
 
 /// Refuses hooks with a wrong signature, and shows the right one. The arguments' values are unused.
@@ -68,6 +83,7 @@ constexpr bool check_hooks(const vec<R, n_state<Model>>* y = nullptr, const inpu
     using observed_values = vec<R, n_observed<Model>>;
     if constexpr (has_rhs<Model> && n_state<Model> != 0) {
         MYRIAD_CHECK_ORDER(rhs)
+        MYRIAD_CHECK_ORDER_OF_ONE(rhs, slopes)
         MYRIAD_CHECK_CALL(
             (Model::template rhs<R>(R{}, *y, *p)), std::same_as<slopes>,
             "rhs has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static myriad::vec<R, n_state> "
@@ -92,6 +108,7 @@ constexpr bool check_hooks(const vec<R, n_state<Model>>* y = nullptr, const inpu
     }
     if constexpr (has_events<Model> && n_event<Model> != 0) {
         MYRIAD_CHECK_ORDER(events)
+        MYRIAD_CHECK_ORDER_OF_ONE(events, event_values)
         MYRIAD_CHECK_CALL(
             (Model::template events<R>(R{}, *y, *p)), std::same_as<event_values>,
             "events has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static myriad::vec<R, "
@@ -99,6 +116,7 @@ constexpr bool check_hooks(const vec<R, n_state<Model>>* y = nullptr, const inpu
     }
     if constexpr (has_observe<Model> && n_observed<Model> != 0) {
         MYRIAD_CHECK_ORDER(observe)
+        MYRIAD_CHECK_ORDER_OF_ONE(observe, observed_values)
         MYRIAD_CHECK_CALL(
             (Model::template observe<R>(R{}, *y, *p)), std::same_as<observed_values>,
             "observe has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static myriad::vec<R, "
@@ -156,7 +174,10 @@ constexpr bool check_hooks(const vec<R, n_state<Model>>* y = nullptr, const inpu
     }
     return true;
 }
+#undef MYRIAD_CHECK_ORDER_OF_ONE
+#undef MYRIAD_HAS_PARAMETERS
 #undef MYRIAD_CHECK_ORDER
+#undef MYRIAD_REFUSE_ORDER
 #undef MYRIAD_CHECK_CALL
 
 template <class Model, class R>
