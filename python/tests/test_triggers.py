@@ -141,6 +141,20 @@ def test_the_largest_priority_comes_first(priorities, expected):
     assert after(ramp(*both, parameters=["lag"]), values={"lag": 3})["count"] == expected
 
 
+@pytest.mark.parametrize("priority, expected", [(None, 213), (0, 231)])
+def test_of_equal_actions_the_first_in_the_list_or_with_priorities_the_one_triggered_first_runs(priority, expected):
+    def digit(d, condition, **more):
+        return my.trigger(condition, do={count: 10 * count + d, **more}, priority=priority)
+
+    assert after(ramp(digit(1, y > 0.5), digit(2, x > 1, y=1), digit(3, x > 1)))["count"] == expected
+
+
+@pytest.mark.parametrize("waiting_first", [True, False])
+def test_an_action_that_waits_until_a_crossing_comes_before_that_of_the_crossing(waiting_first):
+    both = [my.trigger(x > 1, delay=1.0, do={count: 10 * count + 1}), my.trigger(x > 2, do={count: 10 * count + 2})]
+    assert after(ramp(*both[::1 if waiting_first else -1]))["count"] == 12
+
+
 def test_the_order_of_ties_is_random_and_follows_from_the_seed():
     def orders(seed, interpreted=True, **priorities):
         both = [my.trigger(x > 1, do={count: 10 * count + i}, priority=priorities.get(f"p{i}")) for i in (1, 2)]
