@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: MIT
+"""Rules of event location (docs/numerics.md) that few models need: tolerances given, and the end of the domain."""
+
+import numpy as np
+import pytest
+
+import myriad_ode as my
+
+x, v = my.states("x v")
+n, k = my.integer_accessory("n"), my.integer_accessory("k")
+at = my.accessory("at")
+
+
+def solved(equations, events, accessories, **options):
+    return my.solve(my.model(equations, events=events, accessories=accessories), device="cpu:1", interpreted=True,
+                    **options)
+
+
+def test_at_the_end_of_the_domain_an_event_fires_that_steps_may_have_missed_by_their_rounding():
+    run = solved({x: 1.0}, my.event(1e6 * (x - 1), do={n: n + 1}), {n: 0}, size=1, start={x: 0.0},
+                 time=(0, 1 - 1e-13), maximum_step=1e-3)
+    assert run[n][0] == 1
+
+
+def test_at_the_end_of_the_domain_an_event_does_not_fire_farther_from_zero_than_its_tolerance():
+    events = [my.event(1e6 * (x - 1), do={n: n + 1}, tolerance=1e-9), my.event(x - 1, do={k: k + 1})]
+    run = solved({x: 1.0}, events, {n: 0, k: 0}, size=1, start={x: 0.0}, time=(0, 1 - 1e-13), maximum_step=1e-3)
+    assert run[n][0] == 0 and run[k][0] == 1
+
+
+def test_a_tolerance_larger_than_what_a_function_changes_by_is_a_64th_of_that():
+    run = solved({x: 1.0}, my.event(my.atan(20 * (x - 0.53)), do={at: my.time}, tolerance=1e3), {at: -1}, size=1,
+                 start={x: 0.0}, time=(0, 1), method="runge_kutta_4", step=1.0)
+    assert abs(np.arctan(20 * (run[at][0] - 0.53))) < (np.arctan(20 * 0.53) + np.arctan(20 * 0.47)) / 64
+
+
+@pytest.mark.parametrize("keeps", [0.5, 0.99])
+def test_an_action_that_moves_its_function_within_the_tolerance_does_not_make_it_fire_again(keeps):
+    heights = np.linspace(1, 2, 100)
+    run = solved({x: v, v: -1.0}, my.event(x, do={v: -v, x: keeps * x, n: n + 1}, tolerance=0.1), {n: 0},
+                 start={x: heights, v: 0.0}, time=(0, 20), rtol=1e-9)
+    fall = np.sqrt(2 * heights)
+    assert np.all(abs(run[n] - (20 / fall + 1) / 2) < 1)
