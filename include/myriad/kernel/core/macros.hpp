@@ -148,6 +148,14 @@ using namespace detail;
 }
 }  // namespace myriad
 
+/// The length of loops over n components: n, but for models whose numbers of components are known only when they run,
+/// as interpreted ones, for which n is a name.
+#if !defined(MYRIAD_LENGTH)
+#define MYRIAD_LENGTH(n) (n)
+#endif
+/// More iterations than this of large bodies stay loops, which otherwise take minutes to compile.
+#define MYRIAD_MOST_COPIES 32
+
 #if defined(__GNUC__)
 #define MYRIAD_UNLIKELY(condition) __builtin_expect(static_cast<bool>(condition), 0)
 #else

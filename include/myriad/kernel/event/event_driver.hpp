@@ -78,7 +78,7 @@ public:
     MYRIAD_FUNCTION mask defined(const detection& detected) const {
         mask lanes = !e_.flags[e_.undefined];
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) lanes = lanes & (detected.g1[j] == detected.g1[j]);
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) lanes = lanes & (detected.g1[j] == detected.g1[j]);
         return lanes;
     }
 

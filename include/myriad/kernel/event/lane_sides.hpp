@@ -92,7 +92,7 @@ struct lane_sides {
     MYRIAD_FUNCTION bool are_beyond_tolerances(const reals& g) const {
         bool beyond = true;
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) beyond = beyond && is_beyond_tolerance(j, g[j]);
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) beyond = beyond && is_beyond_tolerance(j, g[j]);
         return beyond;
     }
     /// The rounding errors of the event functions g at the committed state, or zero if those in question are farther
@@ -100,7 +100,7 @@ struct lane_sides {
     MYRIAD_FUNCTION reals roundings_if_needed(int i, const reals& g, const flags& in_question) const {
         bool clear = true;
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) clear = clear && (!in_question[j] || is_beyond_tolerance(j, g[j]));
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) clear = clear && (!in_question[j] || is_beyond_tolerance(j, g[j]));
         if (clear) return reals{};
         return detail::event_roundings<Model>(get_lane(s.now(), i), get_lanes<R>(s.data.y, i), inputs_of(i),
                                               &scratch().place);

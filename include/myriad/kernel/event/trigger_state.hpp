@@ -74,7 +74,7 @@ struct trigger_conditions {
         const vec<R, m> slope = detail::event_slopes<Model>(now, get_lanes<R>(s.data.y, i), s.slope_of(i), p);
         bool any = false;
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
             if (!unknown(i)[j] || !detail::tells_heading(slope[j])) continue;
             sides.put_side(j, i, sign_of(slope[j]) * sense);
             any = true;
@@ -93,7 +93,7 @@ private:
     MYRIAD_FUNCTION void look(int i) const {
         const auto on_surface = unknown(i);
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) t.seen.set(j, i, on_surface[j] || sides.e.above.get(j, i));
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) t.seen.set(j, i, on_surface[j] || sides.e.above.get(j, i));
     }
     // Not in lambdas, where nvcc takes every such branch.
     static MYRIAD_FUNCTION bool holds_before_start(int trigger) {
@@ -113,7 +113,7 @@ private:
     /// The function among these that has made a condition hold, which would not without it; else any; else -1.
     MYRIAD_FUNCTION std::int32_t turning(int i, int trigger, const mask_set<bool, m>& turned) const {
         std::int32_t found = -1;
-        for (int f = 0; f < m; ++f) {
+        for (int f = 0; f < MYRIAD_LENGTH(m); ++f) {
             if (!turned[f]) continue;
             auto without = t.seen.of_lane(i);
             without.set(f, !without[f]);
@@ -126,7 +126,11 @@ private:
         const event_signs<m> positive(t.seen.of_lane(i));
         mask_set<bool, triggers> now;
         now.clear();
-        static_for<0, triggers>([&](auto j) MYRIAD_LAMBDA { now.set(j, Model::condition(j, positive)); });
+        if constexpr (triggers > MYRIAD_MOST_COPIES) {
+            for (int j = 0; j < MYRIAD_LENGTH(triggers); ++j) now.set(j, Model::condition(j, positive));
+        } else {
+            static_for<0, triggers>([&](auto j) MYRIAD_LAMBDA { now.set(j, Model::condition(j, positive)); });
+        }
         return now;
     }
 };

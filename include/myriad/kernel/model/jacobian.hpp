@@ -17,7 +17,7 @@ MYRIAD_FUNCTION vec<S, n_state<Model>> directional_derivative(const Dual& t, con
     const auto f = Model::template rhs<Dual>(t, y, p);
     vec<S, n_state<Model>> out;
     MYRIAD_UNROLL_UP_TO(128, 128)
-    for (int c = 0; c < n_state<Model>; ++c) out[c] = f[c].derivative;
+    for (int c = 0; c < MYRIAD_LENGTH(n_state<Model>); ++c) out[c] = f[c].derivative;
     return out;
 }
 
@@ -26,7 +26,7 @@ template <class Dual, class S, int n>
 MYRIAD_FUNCTION vec<Dual, n> constants(const vec<S, n>& y) {
     vec<Dual, n> out;
     MYRIAD_UNROLL_UP_TO(128, 128)
-    for (int c = 0; c < n; ++c) out[c] = Dual(y[c]);
+    for (int c = 0; c < MYRIAD_LENGTH(n); ++c) out[c] = Dual(y[c]);
     return out;
 }
 

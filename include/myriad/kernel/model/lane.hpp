@@ -166,18 +166,18 @@ template <class R, class S, int n>
 MYRIAD_FUNCTION vec<R, n> get_lanes(const vec<S, n>& v, int i) {
     vec<R, n> out;
     MYRIAD_UNROLL
-    for (int c = 0; c < n; ++c) out[c] = static_cast<R>(get_lane(v[c], i));
+    for (int c = 0; c < MYRIAD_LENGTH(n); ++c) out[c] = static_cast<R>(get_lane(v[c], i));
     return out;
 }
 template <class R, class S, int n>
 MYRIAD_FUNCTION void set_lanes(vec<S, n>& v, int i, const vec<R, n>& lane) {
     MYRIAD_UNROLL
-    for (int c = 0; c < n; ++c) set_lane(v[c], i, lane[c]);
+    for (int c = 0; c < MYRIAD_LENGTH(n); ++c) set_lane(v[c], i, lane[c]);
 }
 
 /// Whether the first components of two states are equal (a NaN equals nothing).
 template <class R, int n>
-MYRIAD_FUNCTION bool same_values(const vec<R, n>& a, const vec<R, n>& b, int count = n) {
+MYRIAD_FUNCTION bool same_values(const vec<R, n>& a, const vec<R, n>& b, int count = MYRIAD_LENGTH(n)) {
     bool same = true;
     MYRIAD_UNROLL
     for (int c = 0; c < count; ++c) same = same && a[c] == b[c];

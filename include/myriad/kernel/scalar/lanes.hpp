@@ -21,7 +21,7 @@ template <class S, int n>
 MYRIAD_FUNCTION mask_of<S> all_finite(const vec<S, n>& y) {
     mask_of<S> finite = is_finite(y[0]);
     MYRIAD_UNROLL_UP_TO(32, 128)
-    for (int c = 1; c < n; ++c) finite = finite & is_finite(y[c]);
+    for (int c = 1; c < MYRIAD_LENGTH(n); ++c) finite = finite & is_finite(y[c]);
     return finite;
 }
 

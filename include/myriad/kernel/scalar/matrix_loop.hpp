@@ -45,7 +45,7 @@ struct matrix_loop {
             static_for<0, n>(f);
         } else {
             MYRIAD_ROLLED
-            for (int i = 0; i < n; ++i) f(i);
+            for (int i = 0; i < MYRIAD_LENGTH(n); ++i) f(i);
         }
     }
     /// From n - 1 down to 0.
@@ -55,7 +55,7 @@ struct matrix_loop {
             static_for<0, n>([&](auto i) MYRIAD_LAMBDA { f(constant_index<n - 1 - decltype(i)::value>{}); });
         } else {
             MYRIAD_ROLLED
-            for (int i = n - 1; i >= 0; --i) f(i);
+            for (int i = MYRIAD_LENGTH(n) - 1; i >= 0; --i) f(i);
         }
     }
     /// k <= i < n
@@ -65,7 +65,7 @@ struct matrix_loop {
             static_for<K::value, n>(f);
         } else {
             MYRIAD_UNROLL_BY(4)
-            for (int i = k; i < n; ++i) f(i);
+            for (int i = k; i < MYRIAD_LENGTH(n); ++i) f(i);
         }
     }
     /// k < i < n
@@ -75,7 +75,7 @@ struct matrix_loop {
             static_for<K::value + 1, n>(f);
         } else {
             MYRIAD_UNROLL_BY(4)
-            for (int i = k + 1; i < n; ++i) f(i);
+            for (int i = k + 1; i < MYRIAD_LENGTH(n); ++i) f(i);
         }
     }
     /// 0 <= i < k

@@ -22,10 +22,10 @@ template <class Method, int first, int end, class Use>
 MYRIAD_FUNCTION void each_component(Use&& use) {
     if constexpr (rosenbrock_method<Method>) {
         MYRIAD_UNROLL_UP_TO(128, 128)
-        for (int c = first; c < end; ++c) use(c);
+        for (int c = first; c < MYRIAD_LENGTH(end); ++c) use(c);
     } else {
         MYRIAD_UNROLL_UP_TO(54, 16)
-        for (int c = first; c < end; ++c) use(c);
+        for (int c = first; c < MYRIAD_LENGTH(end); ++c) use(c);
     }
 }
 /// The same for the first n.

@@ -84,7 +84,8 @@ MYRIAD_FUNCTION void complete_interpolant(step_data<Method, S, n>& step, const i
             if constexpr (extra_weight<Method, own, stage, R> != R(0)) {
                 const S scale = step.h * S(extra_weight<Method, own, stage, R>);
                 MYRIAD_UNROLL
-                for (int c = 0; c < n; ++c) argument[c] = fma(scale, step.template slope<stage>()[c], argument[c]);
+                for (int c = 0; c < MYRIAD_LENGTH(n); ++c)
+                    argument[c] = fma(scale, step.template slope<stage>()[c], argument[c]);
             }
         });
         step.extra[own] = detail::evaluate_rhs<Model>(fma(S(extra_node<Method, own, R>), step.h, step.t), argument, p);
@@ -101,7 +102,7 @@ MYRIAD_FUNCTION vec<T, n> hermite_interpolation(const vec<S, n>& y0, const vec<S
     const T theta1 = theta - S(R(1));
     const T middle = S(R(1)) - theta - theta;
     MYRIAD_UNROLL
-    for (int c = 0; c < n; ++c) {
+    for (int c = 0; c < MYRIAD_LENGTH(n); ++c) {
         const S difference = y1[c] - y0[c];
         const T slopes = fma(theta1, k0[c], theta * k1[c]);
         const T bend = fma(h, slopes, middle * difference);
@@ -133,7 +134,7 @@ MYRIAD_FUNCTION vec<T, n> interpolate(const step_data<Method, S, n>& step, const
             }
         });
         MYRIAD_UNROLL
-        for (int c = 0; c < n; ++c) {
+        for (int c = 0; c < MYRIAD_LENGTH(n); ++c) {
             T increment = weight[0] * step.trial.k[0][c];
             static_for<1, stages>([&](auto i) MYRIAD_LAMBDA {
                 constexpr int stage = decltype(i)::value;

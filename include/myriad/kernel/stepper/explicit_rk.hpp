@@ -158,7 +158,7 @@ MYRIAD_FUNCTION vec<S, n> combine(const vec<S, n>& y, const S& h, const vec<vec<
     const S scale = h * S(detail::first_operand<Method, row, real_of<S>>());
     vec<S, n> out;
     MYRIAD_UNROLL_UP_TO(64, 16)
-    for (int c = 0; c < n; ++c) out[c] = fma(scale, detail::scaled_sum<Method, row>(k, c), y[c]);
+    for (int c = 0; c < MYRIAD_LENGTH(n); ++c) out[c] = fma(scale, detail::scaled_sum<Method, row>(k, c), y[c]);
     return out;
 }
 
@@ -181,7 +181,7 @@ template <class S, int n>
 MYRIAD_FUNCTION void copy_components(vec<S, n>& to, const vec<S, n>& from) {
     if constexpr (is_large_in_packs<S, n>) {
         MYRIAD_UNROLL_UP_TO(64, 16)
-        for (int c = 0; c < n; ++c) to[c] = from[c];
+        for (int c = 0; c < MYRIAD_LENGTH(n); ++c) to[c] = from[c];
     } else {
         to = from;
     }
@@ -211,7 +211,8 @@ template <class Method, int stage, class S, int n>
 MYRIAD_FUNCTION void see_stage_before(vec<vec<S, n>, Method::stages>& k) {
     if constexpr (is_unseen_stage<Method, stage - 1>) {
         MYRIAD_UNROLL_UP_TO(64, 16)
-        for (int c = 0; c < n; ++c) k[stage][c] = fma(S(-real_of<S>(0)), abs(k[stage - 1][c]), k[stage][c]);
+        for (int c = 0; c < MYRIAD_LENGTH(n); ++c)
+            k[stage][c] = fma(S(-real_of<S>(0)), abs(k[stage - 1][c]), k[stage][c]);
     }
 }
 
@@ -229,7 +230,7 @@ MYRIAD_FUNCTION void explicit_rk_step(const S& t, const S& h, const S& t1, const
     const auto add_stage = [&](auto j) MYRIAD_LAMBDA {
         constexpr int stage = decltype(j)::value, first = first_stage<Method, last>;
         MYRIAD_UNROLL_UP_TO(64, 16)
-        for (int c = 0; c < n; ++c) {
+        for (int c = 0; c < MYRIAD_LENGTH(n); ++c) {
             if constexpr (stage == first) {
                 sum[c] = trial.k[stage][c];
             } else if constexpr (stage > first) {
@@ -258,7 +259,7 @@ MYRIAD_FUNCTION void explicit_rk_step(const S& t, const S& h, const S& t1, const
     if constexpr (!Method::first_same_as_last) {
         const S scale = h * S(detail::first_operand<Method, last, R>());
         MYRIAD_UNROLL_UP_TO(64, 16)
-        for (int c = 0; c < n; ++c) trial.y[c] = fma(scale, sum[c], y[c]);
+        for (int c = 0; c < MYRIAD_LENGTH(n); ++c) trial.y[c] = fma(scale, sum[c], y[c]);
     }
 }
 

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+// Vectors whose length is that of the tape which the thread runs: what lets one kernel interpret models of any size. To
+// be included before the kernel body.
+#pragma once
+
+#include "myriad/kernel/core/macros.hpp"
+#include "tape.hpp"
+
+// What loops of the kernel body go over: for names of numbers of components, those of the tape.
+#undef MYRIAD_LENGTH
+#define MYRIAD_LENGTH(n) (::myriad::python::length_of<(n)>())
+// Such loops stay loops.
+#undef MYRIAD_UNROLL
+#define MYRIAD_UNROLL
+#undef MYRIAD_UNROLL_UP_TO
+#define MYRIAD_UNROLL_UP_TO(on_gpu, on_cpu)
+
+#include <cstddef>
+#include <new>
+#include <type_traits>
+
+#include "myriad/kernel/core/vec.hpp"
+
+namespace myriad::python {
+
+/// Memory for `count` values of kind T, uninitialised.
+template <class T>
+class tape_array {
+public:
+    static_assert(std::is_trivially_destructible_v<T> || std::is_default_constructible_v<T>);
+    explicit tape_array(std::size_t count)
+        : size_class_(tape_memory::class_of((count > 0 ? count : 1) * sizeof(T))),
+          values_(static_cast<T*>(tape_memory::take(size_class_))) {}
+    tape_array(tape_array&& other) noexcept : size_class_(other.size_class_), values_(other.values_) {
+        other.values_ = nullptr;
+    }
+    tape_array& operator=(tape_array&& other) noexcept {
+        T* const mine = values_;
+        const int my_class = size_class_;
+        values_ = other.values_, size_class_ = other.size_class_;
+        other.values_ = mine, other.size_class_ = my_class;
+        return *this;
+    }
+    ~tape_array() {
+        if (values_ != nullptr) tape_memory::give(values_, size_class_);
+    }
+    T& operator[](std::ptrdiff_t i) { return values_[i]; }
+    const T& operator[](std::ptrdiff_t i) const { return values_[i]; }
+    T* data() { return values_; }
+
+private:
+    int size_class_;
+    T* values_;
+};
+
+}  // namespace myriad::python
+
+namespace myriad::inline MYRIAD_TARGET {
+
+/// As `vec` of other sizes, but always initialised: numbers to zero, as each may be read before an interpreted model
+/// without components of its kind has set it.
+template <class S, int size>
+requires(python::is_length_of_tape<size>) struct vec<S, size> {
+    vec() : values_(count()) {
+        if constexpr (plain) {
+            __builtin_memset(static_cast<void*>(values_.data()), 0, count() * sizeof(S));
+        } else {
+            for (std::size_t c = 0; c < count(); ++c) ::new (static_cast<void*>(values_.data() + c)) S();
+        }
+    }
+    vec(const vec& other) : values_(count()) {
+        if constexpr (plain) {
+            __builtin_memcpy(static_cast<void*>(values_.data()), other.values(), count() * sizeof(S));
+        } else {
+            for (std::size_t c = 0; c < count(); ++c) ::new (static_cast<void*>(values_.data() + c)) S(other[c]);
+        }
+    }
+    vec(vec&& other) noexcept = default;
+    vec& operator=(const vec& other) {
+        if (this == &other) return *this;
+        if constexpr (plain) {
+            __builtin_memcpy(static_cast<void*>(values_.data()), other.values(), count() * sizeof(S));
+        } else {
+            for (std::size_t c = 0; c < count(); ++c) (*this)[c] = other[c];
+        }
+        return *this;
+    }
+    vec& operator=(vec&& other) noexcept = default;
+    ~vec() {
+        if constexpr (!plain) {
+            if (values_.data() == nullptr) return;
+            for (std::size_t c = 0; c < count(); ++c) values_[static_cast<std::ptrdiff_t>(c)].~S();
+        }
+    }
+
+    S& operator[](std::ptrdiff_t i) { return values_[i]; }
+    const S& operator[](std::ptrdiff_t i) const { return values_[i]; }
+
+private:
+    static constexpr bool plain = std::is_trivially_copyable_v<S>;
+    static std::size_t count() {
+        const int length = python::length_of<size>();
+        return static_cast<std::size_t>(length > 0 ? length : 1);
+    }
+    const void* values() const { return &values_[0]; }
+
+    python::tape_array<S> values_;
+};
+
+}  // namespace myriad::inline MYRIAD_TARGET
