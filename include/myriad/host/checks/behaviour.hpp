@@ -2,11 +2,11 @@
 // Calls every function of a model for one instance. Host code, for studies.
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <type_traits>
+#include <vector>
 
 #include "myriad/host/checks/instance_inputs.hpp"
 #include "myriad/host/checks/shown_values.hpp"
@@ -171,8 +171,8 @@ private:
             for (int j = 0; j < MYRIAD_LENGTH(n_stop<Model>); ++j) {
                 const inputs<Model, R>& p = from;
                 const R time = Model::template stop_time<R>(j, place_.at, p);
-                if (stop_is_shown_[j] || !std::isfinite(time)) continue;
-                stop_is_shown_[j] = true;
+                if (stop_is_shown_[static_cast<std::size_t>(j)] || !std::isfinite(time)) continue;
+                stop_is_shown_[static_cast<std::size_t>(j)] = true;
                 lane_data<Model, R> data = from;
                 data.t = time;
                 act(
@@ -196,7 +196,7 @@ private:
     void* to_;
     void (*take_)(void* to, const shown_value&);
     lane_data<Model, R> data_{};
-    std::array<bool, n_stop<Model> + 1> stop_is_shown_{};
+    std::vector<bool> stop_is_shown_ = std::vector<bool>(static_cast<std::size_t>(MYRIAD_LENGTH(n_stop<Model>)));
 };
 
 /// See `behaviour_function`.
