@@ -118,10 +118,13 @@ struct tape_function {
 inline constexpr int most_registers = 0xffff;  ///< of a function, and components of a kind
 inline constexpr int tape_batches = 2;         ///< SIMD registers per pack
 
-// Numbers of components of a kind, as the kernel body has them, where the tape's own are not known: names rather than
-// numbers, which no other vector may have as its length. Only of events, stops and triggers they are limits too.
-inline constexpr int tape_states = 1021, tape_parameters = 1019, tape_accessories = 1013, tape_integers = 1009,
-                     tape_events = 251, tape_triggers = 241, tape_stops = 37;
+inline constexpr int tape_events = 251, tape_triggers = 241, tape_stops = 37;  // most of them
+// The kinds of components of which a tape has a number of its own, and the most that there may be.
+#define MYRIAD_TAPE_LENGTHS(X)   \
+    X(state, most_registers)     \
+    X(parameter, most_registers) \
+    X(accessory, most_registers) \
+    X(integer_accessory, most_registers) X(event, tape_events) X(stop, tape_stops) X(trigger, tape_triggers)
 
 /// The interpreters: for packs of models without stops and triggers, and for one instance at a time of all others.
 /// Compiling both as one for packs would take three times as long.
@@ -157,7 +160,9 @@ struct tape_matrix {
 
 /// How many components of each kind a model has.
 struct tape_lengths {
-    std::int32_t state = 0, parameter = 0, accessory = 0, integer_accessory = 0, event = 0, stop = 0, trigger = 0;
+#define MYRIAD_TAPE_LENGTH(kind, most) std::int32_t kind = 0;
+    MYRIAD_TAPE_LENGTHS(MYRIAD_TAPE_LENGTH)
+#undef MYRIAD_TAPE_LENGTH
 };
 
 /// A model.
@@ -227,27 +232,6 @@ inline void tape_memory::give(void* memory, int size_class) noexcept {
     block* const given = static_cast<block*>(memory);
     given->next = to->free_[size_class];
     to->free_[size_class] = given;
-}
-
-/// Whether a number is one of these names, and the length for which it stands; others are themselves.
-template <int n>
-inline constexpr bool is_length_of_tape =
-    n == tape_states || n == tape_parameters || n == tape_accessories || n == tape_integers || n == tape_events ||
-    n == tape_triggers || n == tape_stops;
-template <int n>
-constexpr int length_of() {
-    if constexpr (is_length_of_tape<n>) {
-        const tape_lengths& is = current_tape->length;
-        return n == tape_states        ? is.state
-               : n == tape_parameters  ? is.parameter
-               : n == tape_accessories ? is.accessory
-               : n == tape_integers    ? is.integer_accessory
-               : n == tape_events      ? is.event
-               : n == tape_triggers    ? is.trigger
-                                       : is.stop;
-    } else {
-        return n;
-    }
 }
 
 }  // namespace myriad::python

@@ -302,13 +302,11 @@ struct tape_model {
     static constexpr bool large_rhs = true;
     static constexpr bool scalar_only = one_by_one;
     static constexpr int pack_batches = tape_batches;
-    enum state { n_state = tape_states };
-    enum parameter { n_parameter = tape_parameters };
+    static constexpr extent n_state = tape_extent::state, n_parameter = tape_extent::parameter,
+                            n_accessory = tape_extent::accessory, n_event = tape_extent::event,
+                            n_integer_accessory = tape_extent::integer_accessory;
     enum shared { n_shared = 1 };
     enum shared_integer { n_shared_integer = 1 };
-    enum accessory { n_accessory = tape_accessories };
-    enum integer_accessory { n_integer_accessory = tape_integers };
-    enum event { n_event = tape_events };
 
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto t, const myriad::vec<R, n_state>& y, const auto& p) {
@@ -392,8 +390,7 @@ struct no_inputs {
 /// The same with stops and triggers.
 struct triggered_tape_model : tape_model<true> {
     using queue = basic_action_queue<tape_layout>;
-    enum stop { n_stop = tape_stops };
-    enum trigger { n_trigger = tape_triggers };
+    static constexpr extent n_stop = tape_extent::stop, n_trigger = tape_extent::trigger;
 
     template <class R>
     [[gnu::noinline]] static R stop_time(int stop, int number, const auto& p) {
@@ -448,9 +445,10 @@ using with_triggers = triggered_tape_model;
 /// The factors of a stiff method's matrix: as the kernel of a model that is compiled would have them.
 template <class S>
 class tape_factors {
+    static constexpr extent n_state = tape_extent::state;
     static_assert(largest_dense_matrix == detail::largest_matrix_in_registers<double> &&
                   most_matrix_updates == detail::most_updates);
-    using dense_factors = detail::lu_factors<S, tape_states>;
+    using dense_factors = detail::lu_factors<S, n_state>;
     using R = real_of<S>;
 
 public:
@@ -467,10 +465,10 @@ public:
 
     /// Factorises shift I - J. Returns false in lanes where that is singular.
     template <class Model>
-    mask_of<S> factorise(const S& t, const S& shift, const vec<S, tape_states>& y, const inputs<Model, S>& p) {
+    mask_of<S> factorise(const S& t, const S& shift, const vec<S, n_state>& y, const inputs<Model, S>& p) {
         return is_dense() ? factorise_dense<Model>(t, shift, y, p) : factorise_sparse<Model>(t, shift, y, p);
     }
-    void solve(vec<S, tape_states>& b) const {
+    void solve(vec<S, n_state>& b) const {
         if (is_dense()) return detail::solve_factorised(dense_[0], b);
         for (int s = 0; s < n_; ++s) {
             const S x = b[of_.pivot[s]];
@@ -492,7 +490,7 @@ private:
     bool is_dense() const { return of_.factor_entries == 0; }
 
     template <class Model>
-    mask_of<S> factorise_dense(const S& t, const S& shift, const vec<S, tape_states>& y, const inputs<Model, S>& p) {
+    mask_of<S> factorise_dense(const S& t, const S& shift, const vec<S, n_state>& y, const inputs<Model, S>& p) {
         auto& a = dense_[0].a;
         if (of_.entries == 0) {
             detail::dual_jacobian<Model>(t, y, p, a);
@@ -506,7 +504,7 @@ private:
         return detail::factorise(dense_[0]);
     }
     template <class Model>
-    mask_of<S> factorise_sparse(const S& t, const S& shift, const vec<S, tape_states>& y, const inputs<Model, S>& p) {
+    mask_of<S> factorise_sparse(const S& t, const S& shift, const vec<S, n_state>& y, const inputs<Model, S>& p) {
         for (int e = 0; e < of_.factor_entries; ++e) a_[e] = S(R(0));
         for (int i = 0; i < n_; ++i) {
             a_[of_.diagonal[i]] = shift;
@@ -543,7 +541,7 @@ private:
     /// Calls put(e, derivative) for the entries of the Jacobian: by the tape's function, or by dual numbers, one
     /// evaluation of the right-hand side for each group of columns.
     template <class Model, class Put>
-    void each_entry(const S& t, const vec<S, tape_states>& y, const inputs<Model, S>& p, Put&& put) {
+    void each_entry(const S& t, const vec<S, n_state>& y, const inputs<Model, S>& p, Put&& put) {
         if (!current_tape->jacobian.empty()) {
             tape_array<S> found(static_cast<std::size_t>(of_.entries));
             Model::derivatives(t, y, p, found.data());
@@ -571,7 +569,7 @@ namespace myriad::detail {
 
 /// The arguments of an interpreter, whose arrays stay where they are.
 template <class Model, class R>
-requires(python::is_length_of_tape<n_state<Model>>) struct argument_arrays<Model, R> {
+requires(python::is_name<n_state<Model>>) struct argument_arrays<Model, R> {
     static constexpr int words = python::tape_events / 32 + 1;
     const R *relative_tolerance, *absolute_tolerance;
     const event_arguments<R>* event;

@@ -20,7 +20,7 @@ template <class Model, class Method, class S>
 struct adaptive_stepping {
     using R = real_of<S>;
     using mask = mask_of<S>;
-    static constexpr int n = n_state<Model>;
+    static constexpr auto n = n_state<Model>;
     static constexpr bool keeps_low = keeps_time_low<Model, Method, R>;
     static constexpr std::int32_t stagnation_interval = 1024;
     using C = control_of<S>;  // less precise in CUDA threads

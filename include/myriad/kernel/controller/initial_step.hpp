@@ -54,7 +54,7 @@ MYRIAD_FUNCTION S step_by_curvature(const kernel_arguments<Model, real_of<S>>& a
                                     integration_state<Model, Method, S>& s, const mask_of<S>& open,
                                     const vec<S, n_state<Model>>& slope0) {
     using R = real_of<S>;
-    constexpr int n = n_state<Model>, controlled = n_controlled<Model>;
+    constexpr auto n = n_state<Model>, controlled = n_controlled<Model>;
     const S direction = copysign(S(R(1)), s.data.t_end - s.data.t);
     vec<S, controlled> scale;
     S d0 = S(R(0)), d1 = S(R(0)), d2 = S(R(0));

@@ -11,7 +11,7 @@ template <class Model, class Method, class S>
 struct event_detector {
     using R = real_of<S>;
     using mask = mask_of<S>;
-    static constexpr int m = n_event<Model>;
+    static constexpr auto m = n_event<Model>;
     using values = vec<S, m>;  // of the event functions in all lanes
     using masks = mask_set<mask, m>;
     using detection = event_detection<S, m>;

@@ -20,7 +20,7 @@ struct located_crossing {
 };
 
 /// The earliest of the events in `crossed`, by the fractions `fraction_of(j)`; of equal ones the first by index.
-template <class R, int m, class Fraction>
+template <class R, extent m, class Fraction>
 MYRIAD_FUNCTION located_crossing<R> first_of(const mask_set<bool, m>& crossed, Fraction&& fraction_of) {
     located_crossing<R> first{R(2), 0};
     MYRIAD_UNROLL
@@ -34,7 +34,7 @@ MYRIAD_FUNCTION located_crossing<R> first_of(const mask_set<bool, m>& crossed, F
 
 /// Element j by comparisons, so that a GPU thread's vector stays in registers: nvcc would put it into memory for an
 /// index that varies, and for a loop here, too.
-template <class R, int m>
+template <class R, extent m>
 MYRIAD_FUNCTION R element(const vec<R, m>& values, int j) {
     if constexpr (m > MYRIAD_MOST_COPIES) {
         return values[j];

@@ -20,7 +20,7 @@ class event_driver {
 public:
     using R = real_of<S>;
     using mask = mask_of<S>;
-    static constexpr int m = n_event<Model>;
+    static constexpr auto m = n_event<Model>;
     using values = vec<S, m>;  // of the event functions in all lanes
     using masks = mask_set<mask, m>;
     using trial_type = trial_step<Method, S, n_state<Model>>;

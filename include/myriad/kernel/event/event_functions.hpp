@@ -127,7 +127,7 @@ MYRIAD_FUNCTION bool tells_heading(R slope) {
 /// functions whose own slope is zero and says nothing, as that of x^3 at x = 0.
 template <class Model, class R>
 MYRIAD_RARE_FUNCTION void find_first_signs(event_place<Model, R>* path) {
-    constexpr int n = n_state<Model>, m = n_event<Model>;
+    constexpr auto n = n_state<Model>, m = n_event<Model>;
     path->here = detail::evaluate_events<Model>(path->t, path->y, path->p);
     MYRIAD_UNROLL
     for (int j = 0; j < MYRIAD_LENGTH(m); ++j) path->sign[j] = R(0);

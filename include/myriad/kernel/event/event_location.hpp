@@ -27,7 +27,7 @@ struct trial_ends {
 template <class Model, class Method, class S>
 struct event_location {
     using R = real_of<S>;
-    static constexpr int m = n_event<Model>;
+    static constexpr auto m = n_event<Model>;
     using reals = vec<R, m>;  // of the event functions in one lane
     using flags = mask_set<bool, m>;
     using fired = fired_events<Model, S>;

@@ -46,7 +46,7 @@ struct step_part {
 };
 
 /// What `step_scan` works on.
-template <class R, int events>
+template <class R, extent events>
 struct scanned_part {
     vec<dual<R>, events> before, after, inside;  // the event functions, with their slopes per step, at points of it
     R theta;                                     // the end of the part that is looked at

@@ -24,7 +24,7 @@ MYRIAD_FUNCTION R sign_of(R x) {
 template <class Model, class Method, class S>
 struct lane_sides {
     using R = real_of<S>;
-    static constexpr int m = n_event<Model>;
+    static constexpr auto m = n_event<Model>;
     using reals = vec<R, m>;  // of the event functions in one lane
     using flags = mask_set<bool, m>;
     using masks = mask_set<mask_of<S>, m>;

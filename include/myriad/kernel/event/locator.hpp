@@ -18,7 +18,7 @@ template <class Model, class Method, class S>
 struct event_locator {
     using R = real_of<S>;
     using mask = mask_of<S>;
-    static constexpr int m = n_event<Model>;
+    static constexpr auto m = n_event<Model>;
     using reals = vec<R, m>;  // of the event functions in one lane
     using flags = mask_set<bool, m>;
     using ends_of_step = step_ends<Model, R>;

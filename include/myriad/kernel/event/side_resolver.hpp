@@ -14,8 +14,8 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 template <class Model, class Method, class S>
 struct side_resolver {
     using R = real_of<S>;
-    static constexpr int n = n_state<Model>;
-    static constexpr int m = n_event<Model>;
+    static constexpr auto n = n_state<Model>;
+    static constexpr auto m = n_event<Model>;
     using reals = vec<R, m>;  // of the event functions in one lane
     using flags = mask_set<bool, m>;
     using state = vec<R, n>;

@@ -14,7 +14,7 @@ template <class Model, class Method, class S>
 struct side_tracker {
     using R = real_of<S>;
     using mask = mask_of<S>;
-    static constexpr int m = n_event<Model>;
+    static constexpr auto m = n_event<Model>;
     using values = vec<S, m>;  // of the event functions in all lanes
     using reals = vec<R, m>;   // in one lane
     using flags = mask_set<bool, m>;

@@ -12,7 +12,7 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 template <class Model, class Method, class S>
 struct step_scan {
     using R = real_of<S>;
-    static constexpr int m = n_event<Model>;
+    static constexpr auto m = n_event<Model>;
     using reals = vec<R, m>;         // of the event functions in one lane
     using moving = vec<dual<R>, m>;  // with their slopes per step
     using flags = mask_set<bool, m>;
@@ -47,7 +47,7 @@ struct step_scan {
             while (true) {
                 MYRIAD_OPTIMISATION_BARRIER(at);
                 at->place = at->theta;
-                if (at->turns++ < m) find_turn(step, side, part.low, at);
+                if (at->turns++ < MYRIAD_LENGTH(m)) find_turn(step, side, part.low, at);
                 const R place = at->place;
                 const bool turns_there = place > part.low && place < at->theta;
                 if (turns_there) {

@@ -16,7 +16,7 @@ template <class Model, class Method, class S>
 struct stop_driver {
     using R = real_of<S>;
     using mask = mask_of<S>;
-    static constexpr int kinds = n_stop<Model>;
+    static constexpr auto kinds = n_stop<Model>;
 
     const kernel_arguments<Model, R>& args;
     integration_state<Model, Method, S>& s;

@@ -26,8 +26,8 @@ struct trigger_state<Model, S, true> {
 template <class Model, class Method, class S>
 struct trigger_conditions {
     using R = real_of<S>;
-    static constexpr int m = n_event<Model>;
-    static constexpr int triggers = n_trigger<Model>;
+    static constexpr auto m = n_event<Model>;
+    static constexpr auto triggers = n_trigger<Model>;
 
     lane_sides<Model, Method, S> sides;
     trigger_state<Model, S>& t;
@@ -40,7 +40,7 @@ struct trigger_conditions {
         t.holds[i] = now;
         t.pending[i].clear();
         if (get_lane(sides.s.data.phase, i) > 0) return;
-        for (int j = 0; j < triggers; ++j) {
+        for (int j = 0; j < MYRIAD_LENGTH(triggers); ++j) {
             t.pending[i].set(j, now[j] && !holds_before_start(j));
             if constexpr (triggers_know_their_function<Model>) t.function[i][j] = -1;
         }
@@ -51,12 +51,12 @@ struct trigger_conditions {
         look(i);
         const auto now = conditions(i);
         if constexpr (triggers_know_their_function<Model>) {
-            for (int j = 0; j < triggers; ++j)
+            for (int j = 0; j < MYRIAD_LENGTH(triggers); ++j)
                 if (now[j] && !t.holds[i][j])
                     t.function[i][j] = turning(i, j, t.located.of_lane(i) & (before ^ t.seen.of_lane(i)));
         }
         t.pending[i] = t.pending[i] | (now & ~t.holds[i]);
-        for (int j = 0; j < triggers; ++j)
+        for (int j = 0; j < MYRIAD_LENGTH(triggers); ++j)
             if (!now[j] && !persists(j)) t.pending[i].set(j, false);
         t.holds[i] = now;
     }

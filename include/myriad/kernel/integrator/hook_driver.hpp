@@ -16,8 +16,8 @@ template <class Model, class Method, class S>
 struct hook_driver {
     using R = real_of<S>;
     using mask = mask_of<S>;
-    static constexpr int n = n_state<Model>;
-    static constexpr int m = n_event<Model>;
+    static constexpr auto n = n_state<Model>;
+    static constexpr auto m = n_event<Model>;
 
     const kernel_arguments<Model, R>& args;
     integration_state<Model, Method, S>& s;
@@ -153,7 +153,7 @@ private:
     static MYRIAD_FUNCTION T chosen(const mask& lanes, const T& now, const T& before) {
         return select(lanes, now, before);
     }
-    template <class T, int size>
+    template <class T, extent size>
     static MYRIAD_FUNCTION vec<T, size> chosen(const mask& lanes, const vec<T, size>& now, const vec<T, size>& before) {
         vec<T, size> values;
         MYRIAD_UNROLL
@@ -161,7 +161,7 @@ private:
         return values;
     }
     /// The lanes in which they differ.
-    template <class T, int size>
+    template <class T, extent size>
     static MYRIAD_FUNCTION mask differing(const vec<T, size>& now, const vec<T, size>& before) {
         mask different = mask(false);
         MYRIAD_UNROLL
@@ -172,7 +172,7 @@ private:
     /// Calls after_trigger for the pending triggers of lane i, in order of their index, and for those that their
     /// actions bring about. Returns whether there were any. Called at several places.
     MYRIAD_LARGE_FUNCTION bool act_on_triggers_of(int i) {
-        constexpr int triggers = n_trigger<Model>;
+        constexpr auto triggers = n_trigger<Model>;
         auto& pending = events.pending_triggers(i);
         bool acted = false;
         [[maybe_unused]] int last = -1;  // the function whose crossing the last action was at

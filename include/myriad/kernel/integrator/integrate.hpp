@@ -25,8 +25,8 @@ template <class Model, class Method, class S>
 struct integrator {
     using R = real_of<S>;
     using mask = mask_of<S>;
-    static constexpr int n = n_state<Model>;
-    static constexpr int m = n_event<Model>;
+    static constexpr auto n = n_state<Model>;
+    static constexpr auto m = n_event<Model>;
     using watchdog_type = phase_watchdog<Model, Method, S>;
     using trial_type = trial_step<Method, S, n>;
     using stepping_type = stepping<Model, Method, S>;

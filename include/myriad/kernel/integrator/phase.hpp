@@ -19,8 +19,8 @@ struct phase_driver {
     using R = real_of<S>;
     using arguments = kernel_arguments<Model, R>;
     using stepping_type = stepping<Model, Method, S>;
-    static constexpr int n = n_state<Model>;
-    static constexpr int m = n_event<Model>;
+    static constexpr auto n = n_state<Model>;
+    static constexpr auto m = n_event<Model>;
 
     const arguments& args;
     integration_state<Model, Method, S>& s;
@@ -287,7 +287,8 @@ private:
             set_lanes(s.data.y, i, before);
             set_lane(s.data.h_next, i, h_next);
             s.ending[i] = status::not_finite;
-        } else if (!team_for<Model>::all(same_values(before, after, MYRIAD_LENGTH(n) - n_tangent<Model>))) {
+        } else if (!team_for<Model>::all(
+                       same_values(before, after, MYRIAD_LENGTH(n) - MYRIAD_LENGTH(n_tangent<Model>)))) {
             if constexpr (m > 0) events.reset(i);
         }
         return wanted;

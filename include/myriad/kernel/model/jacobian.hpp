@@ -22,7 +22,7 @@ MYRIAD_FUNCTION vec<S, n_state<Model>> directional_derivative(const Dual& t, con
 }
 
 /// y as constants.
-template <class Dual, class S, int n>
+template <class Dual, class S, extent n>
 MYRIAD_FUNCTION vec<Dual, n> constants(const vec<S, n>& y) {
     vec<Dual, n> out;
     MYRIAD_UNROLL_UP_TO(128, 128)
@@ -42,7 +42,7 @@ MYRIAD_FUNCTION vec<S, n_state<Model>> time_derivative(const S& t, const vec<S, 
 template <class Model, class S>
 MYRIAD_FUNCTION void dual_jacobian(const S& t, const vec<S, n_state<Model>>& y, const inputs<Model, S>& p,
                                    matrix<S, n_state<Model>>& jacobian) {
-    constexpr int n = n_state<Model>;
+    constexpr auto n = n_state<Model>;
     matrix_loop<S, n>::all([&](auto j) MYRIAD_LAMBDA {
         auto seeded = constants<dual<S>>(y);
         seeded[j].derivative = S(real_of<S>(1));

@@ -13,7 +13,7 @@ struct sampler {
     using R = real_of<S>;
     using mask = mask_of<S>;
     using step_type = accepted_step<Model, Method, S>;
-    static constexpr int n = n_state<Model>;
+    static constexpr auto n = n_state<Model>;
     static constexpr bool watches = samples_trajectory<Method>;
     static constexpr bool changes_inputs = false;
 

@@ -17,7 +17,7 @@ template <class S>
 using count_of = std::conditional_t<lanes_of<S> == 1, std::int32_t, S>;
 
 /// Whether every component is finite, lane by lane.
-template <class S, int n>
+template <class S, extent n>
 MYRIAD_FUNCTION mask_of<S> all_finite(const vec<S, n>& y) {
     mask_of<S> finite = is_finite(y[0]);
     MYRIAD_UNROLL_UP_TO(32, 128)

@@ -15,7 +15,7 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 constexpr int words_for(int size) { return size > 0 ? (size + 31) / 32 : 1; }
 
 /// `size` masks of kind M. Operators work on all of them at once.
-template <class M, int size>
+template <class M, extent size>
 class mask_set {
 public:
     /// In every lane the bits of these words.
@@ -94,7 +94,7 @@ private:
     vec<M, size> masks_;
 };
 
-template <int size>
+template <extent size>
 class mask_set<bool, size> {
 public:
     static MYRIAD_FUNCTION mask_set from_bits(const std::uint32_t* words) {
@@ -174,10 +174,11 @@ public:
     MYRIAD_FUNCTION void set_of_lane(int, const mask_set& values) { *this = values; }
 
 private:
-    static constexpr int count = words_for(size);
+    static constexpr int count = words_for(MYRIAD_CAPACITY(size));
     /// The bits of word k that stand for masks.
     static MYRIAD_FUNCTION std::uint32_t used(int k) {
-        const int bits = size - 32 * k;
+        const int bits = MYRIAD_LENGTH(size) - 32 * k;
+        if (bits < 0) return 0;  // only where the length is less than the capacity
         return bits >= 32 ? ~std::uint32_t(0) : (std::uint32_t(1) << bits) - 1;
     }
     std::uint32_t words_[count];

@@ -10,7 +10,7 @@
 namespace myriad::inline MYRIAD_TARGET {
 
 /// `matrix[i][j]` is row i, column j.
-template <class S, int n>
+template <class S, auto n>  // not an extent, by which g++ 12 crashes
 using matrix = vec<vec<S, n>, n>;
 
 }  // namespace myriad::inline MYRIAD_TARGET
@@ -25,7 +25,7 @@ template <class S>
 inline constexpr int largest_matrix_in_registers = lanes_of<S> == 1 ? 6 : 3;
 
 /// A loop over 0 <= i < n that is written out.
-template <int n>
+template <extent n>
 struct unrolled_loop {
     template <class F>
     static MYRIAD_FUNCTION void all(F&& f) {
@@ -35,7 +35,7 @@ struct unrolled_loop {
 
 /// Loops over 0 <= i < n, for numbers of kind S. `f` gets the index as a `constant_index` if the loop is unrolled, else
 /// as an int.
-template <class S, int n>
+template <class S, extent n>
 struct matrix_loop {
     static constexpr bool unrolled = n <= largest_matrix_in_registers<S>;
 

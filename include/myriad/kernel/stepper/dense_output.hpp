@@ -50,7 +50,7 @@ inline constexpr bool interpolates_between_slopes =
     !rosenbrock_method<Method> && (Method::first_same_as_last || interpolates_with_slope_end<Method>);
 
 /// A trial step with the data that interpolants and event functions need.
-template <class Method, class S, int n>
+template <class Method, class S, extent n>
 struct step_data {
     S t;          // start
     S h;          // length
@@ -73,7 +73,7 @@ struct step_data {
 };
 
 /// Evaluates the interpolant's own stages. The slope at the end of the step must be set.
-template <class Model, class Method, class S, int n>
+template <class Model, class Method, class S, extent n>
 MYRIAD_FUNCTION void complete_interpolant(step_data<Method, S, n>& step, const inputs<Model, S>& p) {
     using R = real_of<S>;
     static_for<0, extra_stages<Method>>([&](auto i) MYRIAD_LAMBDA {
@@ -94,7 +94,7 @@ MYRIAD_FUNCTION void complete_interpolant(step_data<Method, S, n>& step, const i
 
 /// The cubic with values y0, y1 and slopes k0, k1 at the ends of a step of length h, at fraction theta; for a dual
 /// theta, with its derivative. Hairer, Norsett, Wanner, Solving ODE I, II.6, eq. (6.7).
-template <class S, int n, class T>
+template <class S, extent n, class T>
 MYRIAD_FUNCTION vec<T, n> hermite_interpolation(const vec<S, n>& y0, const vec<S, n>& y1, const vec<S, n>& k0,
                                                 const vec<S, n>& k1, const S& h, const T& theta) {
     using R = real_of<S>;
@@ -112,7 +112,7 @@ MYRIAD_FUNCTION vec<T, n> hermite_interpolation(const vec<S, n>& y0, const vec<S
 }
 
 /// State at t + theta h, 0 <= theta <= 1; for a dual theta, with its derivative.
-template <class Method, class S, int n, class T>
+template <class Method, class S, extent n, class T>
 MYRIAD_FUNCTION vec<T, n> interpolate(const step_data<Method, S, n>& step, const T& theta) {
     using R = real_of<S>;
     vec<T, n> out;
