@@ -143,22 +143,19 @@ struct team_run {
 template <class Model, class R>
 kernel_arguments<Model, R> arguments_of(const any_arguments<R>& from) {
     using arrays = argument_arrays<Model, R>;
+    kernel_arguments<Model, R> all;
+    static_cast<argument_head<R>&>(all) = from;
     if constexpr (requires(arrays a) { a.point_to(from); }) {  // the numbers of components are known only now
-        kernel_arguments<Model, R> all;
-        static_cast<argument_head<R>&>(all) = from;
         all.point_to(from);
-        return all;
     } else {
         constexpr argument_offsets<R> at(numbers_of<Model>);
 #define MYRIAD_CHECK_PLACE(type, name, count) static_assert(offsetof(arrays, name) == at.name);
         MYRIAD_ARGUMENT_ARRAYS(MYRIAD_CHECK_PLACE)
 #undef MYRIAD_CHECK_PLACE
         static_assert(sizeof(arrays) == at.end);
-        kernel_arguments<Model, R> all;
-        static_cast<argument_head<R>&>(all) = from;
         std::memcpy(static_cast<arrays*>(&all), from.arrays, sizeof(arrays));
-        return all;
     }
+    return all;
 }
 
 /// Integrates the ensemble with packs of the given number of batches, by at most `most_threads` threads, whose team
