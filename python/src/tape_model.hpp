@@ -292,9 +292,6 @@ inline void run_in_generate(const tape_step& step, Instance& instance, R* r) {
     }
 }
 
-template <class S>
-class tape_factors;
-
 template <bool one_by_one>
 struct tape_model {
     static constexpr bool writes_parameters = true;
@@ -328,8 +325,6 @@ struct tape_model {
     static void derivatives(const S& t, const myriad::vec<S, n_state>& y, const auto& p, S* entries) {
         run(current_tape->jacobian, t, y, p, entries);
     }
-    template <class S>
-    using factors = tape_factors<S>;
 
     MYRIAD_FUNCTION static void initialise(auto& lane) { hook(current_tape->initialise, lane); }
     template <class R>
@@ -566,6 +561,11 @@ private:
 }  // namespace myriad::python
 
 namespace myriad::detail {
+
+template <class Model, class S>
+requires(python::is_name<n_state<Model>>) struct stage_factors_of<Model, S> {
+    using type = python::tape_factors<S>;
+};
 
 /// The arguments of an interpreter, whose arrays stay where they are.
 template <class Model, class R>

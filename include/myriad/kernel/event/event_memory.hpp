@@ -152,7 +152,8 @@ MYRIAD_RARE_FUNCTION void begin_beyond(event_scratch<Model, R>* at, const event_
         const auto steps = iterations - own->moved_at[at->function] + steps_of_location * own->moves;
         place.length = copysign(rounding * static_cast<R>(steps), step.h);
         MYRIAD_UNROLL
-        for (int c = 0; c < MYRIAD_LENGTH(n_state<Model>); ++c) place.there[c] = fma(place.length, step.slope1[c], step.y1[c]);
+        for (int c = 0; c < MYRIAD_LENGTH(n_state<Model>); ++c)
+            place.there[c] = fma(place.length, step.slope1[c], step.y1[c]);
         place.here = detail::evaluate_events<Model>(step.t1 + place.length, place.there, place.p);
         MYRIAD_OPTIMISATION_BARRIER(at);
         const int j = at->function;

@@ -206,7 +206,7 @@ struct side_resolver {
         auto& own = sides.memory_of(i);
         ++own.moves;
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j)
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j)
             if (events.which.get(j, i) && in_question[j]) own.moved_at[j] = s.iterations_of(sides.args, i);
         sides.update_in_question(i);
     }

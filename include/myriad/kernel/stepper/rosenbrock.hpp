@@ -227,11 +227,11 @@ MYRIAD_FUNCTION mask_of<S> factorise_stage_matrix(const S& t, const S& per_h, co
     });
     return factorise(lu, keep);
 }
-/// The same for factors that a model brings, whose matrix is known only when it runs.
-template <class Method, class Model, class S>
-requires requires { typename Model::template factors<S>; }
+/// The same for factors whose matrix is known only when the model runs (`stage_factors_of`).
+template <class Method, class Model, class S, class Factors>
+requires requires(Factors& lu, vec<S, n_state<Model>>& b) { lu.solve(b); }
 MYRIAD_FUNCTION mask_of<S> factorise_stage_matrix(const S& t, const S& per_h, const vec<S, n_state<Model>>& y,
-                                                  const inputs<Model, S>& p, typename Model::template factors<S>& lu) {
+                                                  const inputs<Model, S>& p, Factors& lu) {
     return lu.template factorise<Model>(t, per_h * S(reciprocal_gamma<Method, real_of<S>>), y, p);
 }
 template <class Factors, class S, extent n>
@@ -239,16 +239,12 @@ requires requires(const Factors& lu, vec<S, n>& b) { lu.solve(b); }
 MYRIAD_FUNCTION void solve_factorised(const Factors& lu, vec<S, n>& b) { lu.solve(b); }
 
 template <class Model, class S>
-constexpr auto stage_factors_of() {
-    if constexpr (requires { typename Model::template factors<S>; }) {
-        return std::type_identity<typename Model::template factors<S>>{};
-    } else {
-        return std::type_identity<std::conditional_t<factorises_sparsely<Model>, sparse_lu_factors<Model, S>,
-                                                     lu_factors<S, n_state<Model>>>>{};
-    }
-}
+struct stage_factors_of {
+    using type =
+        std::conditional_t<factorises_sparsely<Model>, sparse_lu_factors<Model, S>, lu_factors<S, n_state<Model>>>;
+};
 template <class Model, class S>
-using stage_factors = typename decltype(stage_factors_of<Model, S>())::type;
+using stage_factors = typename stage_factors_of<Model, S>::type;
 
 /// 1 / h. Steps to an event may be as short as 1e-320. If 1 / (h gamma) or its reciprocal would leave the normal
 /// numbers, those of a slightly longer step are used, over which nothing changes either.
