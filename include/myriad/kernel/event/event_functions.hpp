@@ -3,6 +3,7 @@
 #pragma once
 
 #include "myriad/kernel/core/static_for.hpp"
+#include "myriad/kernel/model/jacobian_pattern.hpp"
 #include "myriad/kernel/model/lane.hpp"
 #include "myriad/kernel/scalar/dual.hpp"
 #include "myriad/kernel/scalar/math.hpp"
