@@ -15,6 +15,7 @@
 #include "compile/compiled_cache.hpp"
 #include "compile/compiler.hpp"
 #include "compile/loaded_library.hpp"
+#include "myriad/host/core/error.hpp"
 
 namespace nb = nanobind;
 
@@ -49,8 +50,9 @@ public:
         return compiling::made_from(by_, all, MYRIAD_HEADERS_DIGEST, source);
     }
 
-    /// Compiles a source to `model.so` in a folder; returns whether the headers were prepared.
-    bool compile(const std::string& source, const std::string& folder) const {
+    /// Compiles a source to `model.so` in a folder, in so many seconds at the most; returns whether the headers were
+    /// prepared.
+    bool compile(const std::string& source, const std::string& folder, double seconds) const {
         const std::string file = folder + "/model.cpp", made = folder + "/model.so", output = folder + "/said.txt";
         write_file(file, source + digest_line(made_from(source)));
         const compiled_cache cache(check_signals);
@@ -60,7 +62,11 @@ public:
             for (const auto& part : {flags(), headers, {"-shared", file, "-o", made}})
                 words.insert(words.end(), part.begin(), part.end());
             std::filesystem::remove(made);
-            const int status = child_process(words, output).wait(check_signals);
+            child_process runs(words, output, ended_with::its_programs);
+            require(runs.wait_for(seconds, check_signals), by_.name(), " has not compiled the model after ", seconds,
+                    " s, and was ended", host::cure,
+                    "give it more time by the environment variable MYRIAD_COMPILE_SECONDS, or use interpreted=True");
+            const int status = runs.wait();
             return status == 0 || (status == child_process::unknown && std::filesystem::exists(made));
         };
         if (run(prepared)) return !prepared.empty();
@@ -131,7 +137,7 @@ void bind_compile(nb::module_& m) {
                  const std::string text = c.made_from(source);
                  return nb::bytes(text.data(), text.size());
              })
-        .def("compile", &kernel_compiler::compile, released)
+        .def("compile", &kernel_compiler::compile, nb::arg("source"), nb::arg("folder"), nb::arg("seconds"), released)
         .def("prepare", &kernel_compiler::prepare, released);
     m.def(
         "find_compiler",

@@ -266,28 +266,19 @@ NB_MODULE(_core, m) {
 #undef METHOD_NAME
     m.def("tape_operations", &tape_operations);
     m.attr("component_kinds") = component_kinds();
-    nb::dict sizes;
-    for (const std::string& size : interpreter_sizes()) {
-        nb::dict limits;
-        const detail::model_numbers& most = interpreter(interpreted_methods().front(), size).facts.model;
-#define MYRIAD_LIMIT_OF_KIND(kind, ...) limits[#kind] = most.n_##kind;
-        MYRIAD_INSTANCE_KINDS(MYRIAD_LIMIT_OF_KIND)
-#undef MYRIAD_LIMIT_OF_KIND
-        limits["event"] = most.n_event;
-        sizes[size.c_str()] = limits;
-    }
-#define MYRIAD_LIMIT_OF_STOPS(size, ...)                               \
-    sizes[#size]["stop"] = static_cast<int>(tape_sizes::size::n_stop); \
-    sizes[#size]["trigger"] = static_cast<int>(tape_sizes::size::n_trigger);
-    MYRIAD_TAPE_SIZES(MYRIAD_LIMIT_OF_STOPS)
-    m.attr("tape_sizes") = sizes;
-    m.attr("tape_registers") = tape_registers;
+    nb::dict limits;
+    limits["event"] = static_cast<int>(tape_events);
+    limits["stop"] = static_cast<int>(tape_stops);
+    limits["trigger"] = static_cast<int>(tape_triggers);
+    m.attr("tape_limits") = limits;
+    m.attr("tape_registers") = most_registers;
     m.attr("tape_values") = tape_values;
     nb::class_<interpreted>(m, "Tape").def("__init__", [](interpreted* self, const tape_functions& functions,
                                                           const std::vector<int>& codes,
                                                           const std::vector<double>& values,
                                                           const std::vector<std::array<int, 4>>& registers,
-                                                          const std::vector<int>& false_at_first,
+                                                          const std::array<int, 7>& length, const tape_entries& entries,
+                                                          bool autonomous, const std::vector<int>& false_at_first,
                                                           const std::vector<int>& lapsing,
                                                           const std::array<int, 4>& queue, int due, std::int64_t seed) {
         require(codes.size() == values.size() && codes.size() == registers.size(), "a tape's parts differ in length");
@@ -302,7 +293,14 @@ NB_MODULE(_core, m) {
         }
         require(queue[3] <= tape_values, "actions that wait have at most ", tape_values, " values");
         new (self) interpreted(functions, std::move(steps),
-                               {false_at_first, lapsing, {queue[0], queue[1], queue[2], queue[3]}, due, seed});
+                               {{length[0], length[1], length[2], length[3], length[4], length[5], length[6]},
+                                entries,
+                                autonomous,
+                                false_at_first,
+                                lapsing,
+                                {queue[0], queue[1], queue[2], queue[3]},
+                                due,
+                                seed});
     });
     nb::class_<library>(m, "Library")
         .def("__init__",
@@ -310,7 +308,7 @@ NB_MODULE(_core, m) {
                  new (self) library(path, {made_from.c_str(), made_from.size()});
              })
         .def("give_model", &library::give_model, "tape"_a, "method"_a, "mass_matrix"_a)
-        .def(nb::init<const std::string&, const std::string&, int, int, bool, std::shared_ptr<interpreted>>())
+        .def(nb::init<const std::string&, int, int, bool, std::shared_ptr<interpreted>>())
         .def("__init__", [](library* self, const nb::bytes& image,
                             int device) { new (self) library(std::string(image.c_str(), image.size()), device); })
         .def_prop_ro("instruction_set", [](const library& l) {

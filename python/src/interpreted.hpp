@@ -3,22 +3,28 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "myriad/python/kernel_interface.hpp"
 #include "tape.hpp"
+#include "tape_matrix.hpp"
 
 namespace myriad::python {
 
-/// First and last step of each function: rhs, events, initialise, after_step, finalise, generate; and then those of
-/// which there are several.
+/// First and last step of each function: rhs, events, initialise, after_step, finalise, generate, jacobian; and then
+/// those of which there are several.
 using tape_functions = std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>>;
 
-/// What a tape has besides its functions: numbers of triggers whose initial value is false, and of those that do not
-/// persist; the queue, the stop at which its actions run, and the seed of their order.
-struct tape_triggers {
+/// What a tape has besides its functions: how many components of each kind, the entries of the Jacobian if a stiff
+/// method is to know them; numbers of triggers whose initial value is false, and of those that do not persist; the
+/// queue, the stop at which its actions run, and the seed of their order.
+struct tape_facts {
+    tape_lengths length;
+    tape_entries entries;
+    bool autonomous = false;
     std::vector<int> false_at_first, lapsing;
     tape_queue queue;
     int due = -1;
@@ -28,7 +34,7 @@ struct tape_triggers {
 /// A tape with its memory. Throws `error` if it is not a valid one.
 class interpreted {
 public:
-    interpreted(const tape_functions& functions, std::vector<tape_step> steps, const tape_triggers& triggers);
+    interpreted(const tape_functions& functions, std::vector<tape_step> steps, const tape_facts& facts);
     interpreted(const interpreted&) = delete;
     interpreted& operator=(const interpreted&) = delete;
     const tape& get() const { return tape_; }
@@ -36,14 +42,16 @@ public:
 private:
     std::vector<tape_step> steps_;
     std::vector<std::vector<tape_function>> series_;
+    std::unique_ptr<bool[]> false_at_first_, lapsing_;
+    stored_matrix matrix_;
     tape tape_;
 };
 
-/// The kernel that interprets models by a method; `size`: one of `interpreter_sizes`.
-const kernel_library& interpreter(const std::string& method, const std::string& size);
+/// The kernel that interprets a tape by a method, with the model's numbers.
+kernel_library interpreter(const std::string& method, const tape& model, int shared, int shared_integers);
+/// The instruction set for which the interpreter is compiled.
+openmp::instruction_set instructions_of_interpreter();
 std::vector<std::string> interpreted_methods();
-/// The interpreters' sizes, from the smallest.
-std::vector<std::string> interpreter_sizes();
 std::vector<std::string> tape_operations();
 
 /// `start_team` for a kernel that interprets the calling thread's tape.

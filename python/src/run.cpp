@@ -3,11 +3,13 @@
 #include "run.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <utility>
 
 #include "compile/loaded_library.hpp"
 #include "myriad/host/checks/consistency.hpp"
+#include "myriad/host/memory/memory_need.hpp"
 #include "myriad/host/report/matrix_note.hpp"
 #include "myriad/host/report/stability.hpp"
 #include "myriad/host/report/stiffness.hpp"
@@ -31,11 +33,29 @@ library::library(const std::string& path, std::string_view made_from) {
     loaded.keep();
 }
 
-library::library(const std::string& method, const std::string& size, int shared, int shared_integers, bool may_stop,
+namespace {
+
+template <class Method>
+constexpr auto limit_of() -> double (*)() {
+    if constexpr (host::may_be_unstable<Method>) return &host::real_stability_limit<Method>;
+    return nullptr;
+}
+
+/// The longest stable step of a method, where a stiff one may be advised.
+auto limit_of_method(const std::string& method) -> double (*)() {
+#define MYRIAD_TAKE_LIMIT(name) \
+    if (method == #name) return limit_of<name>();
+    MYRIAD_METHODS(MYRIAD_TAKE_LIMIT)
+#undef MYRIAD_TAKE_LIMIT
+    return nullptr;
+}
+
+}  // namespace
+
+library::library(const std::string& method, int shared, int shared_integers, bool may_stop,
                  std::shared_ptr<const interpreted> model)
-    : cpu_(interpreter(method, size)), model_(std::move(model)) {
-    cpu_.facts.model.n_shared = shared;
-    cpu_.facts.model.n_shared_integer = shared_integers;
+    : cpu_(interpreter(method, model->get(), shared, shared_integers)), model_(std::move(model)),
+      stability_limit_(limit_of_method(method)) {
     cpu_.facts.call.hooks_may_stop = may_stop;
     const auto set = static_cast<openmp::instruction_set>(cpu_.instruction_set);
     require(host::cpu_has(set), "this CPU lacks the instructions of ", host::name_of(set),
@@ -48,26 +68,12 @@ library::library(std::string image, int device) {
     gpu_ = program.release();
 }
 
-namespace {
-
-template <class Method>
-constexpr auto limit_of() -> double (*)() {
-    if constexpr (host::may_be_unstable<Method>) return &host::real_stability_limit<Method>;
-    return nullptr;
-}
-
-}  // namespace
-
 void library::give_model(std::shared_ptr<const interpreted> model, const std::string& method,
                          std::vector<double> mass_matrix) {
-    const kernel_library& some = interpreter(interpreted_methods().front(), interpreter_sizes().front());
-    if (!host::cpu_has(static_cast<openmp::instruction_set>(some.instruction_set))) return;
+    if (!host::cpu_has(instructions_of_interpreter())) return;
     model_ = std::move(model);
     mass_matrix_ = std::move(mass_matrix);
-#define MYRIAD_TAKE_LIMIT(name) \
-    if (method == #name) stability_limit_ = limit_of<name>();
-    MYRIAD_METHODS(MYRIAD_TAKE_LIMIT)
-#undef MYRIAD_TAKE_LIMIT
+    stability_limit_ = limit_of_method(method);
 }
 
 component_names names_from(const names_of_kinds& all) {
@@ -101,9 +107,20 @@ named_shape::named_shape(const detail::model_numbers& of, component_names its_na
 
 namespace {
 
-/// The components of a kind that the model has; those that an interpreter has besides have no name.
-std::size_t used(const std::vector<std::string>& names) {
-    return names.size() - static_cast<std::size_t>(std::count(names.begin(), names.end(), std::string()));
+/// Refuses what the interpreter has no memory for: about so many vectors are under way in a step, and a dense matrix.
+template <class R>
+void check_memory_of_interpreter(const library& kernel, const named_shape& shape, int threads, std::int64_t size) {
+    constexpr double vectors = 100, few = 10;
+    const detail::model_numbers& n = kernel.facts().model;
+    const tape_lengths& length = kernel.model()->length;
+    const double lanes = length.stop > 0 || length.trigger > 0 ? 1 : tape_batches * 32.0 / sizeof(R);
+    const double parts = std::min(static_cast<double>(threads), std::ceil(static_cast<double>(size) / lanes));
+    const double reals = vectors * n.n_state + few * (n.n_parameter + n.n_accessory + n.n_integer_accessory) +
+                         2 * static_cast<double>(kernel.facts().matrix.factor_entries);
+    host::memory_need need;
+    need.add("vectors and matrices of its threads", parts * lanes * reals * sizeof(R));
+    need.check(message("the interpreter of a model with ", shape.n_state, " states"),
+               "use fewer threads, as with device=\"cpu:1\", or interpreted=False");
 }
 
 }  // namespace
@@ -117,8 +134,7 @@ host::called_model<R> called_for(const library& kernel, const named_shape& shape
     if (is_for_gpu != (where.which() == device::kind::cuda)) return made;
     if (!is_for_gpu) made.functions = *static_cast<const detail::instance_functions<R>*>(kernel.cpu().functions);
     if (kernel.model() != nullptr) {
-        const auto of_tape = functions_of_tape<R>(
-            *kernel.model(), is_for_gpu ? kernel.stability_limit() : made.functions.stability_limit);
+        const auto of_tape = functions_of_tape<R>(*kernel.model(), kernel.stability_limit());
         made.functions.rhs = of_tape.rhs;
         made.functions.stability_limit = of_tape.stability_limit;
         made.functions.event_resolution = of_tape.event_resolution;
@@ -132,11 +148,14 @@ host::called_model<R> called_for(const library& kernel, const named_shape& shape
         made.on_gpus.push_back(engines_of<R>(*kernel.gpu(), where, o));
         return made;
     }
-    made.on_cpu = {[&kernel](const detail::any_arguments<R>& all, const detail::run_options& how) {
+    made.on_cpu = {[&kernel, &shape](const detail::any_arguments<R>& all, const detail::run_options& how) {
+                       const int threads = how.threads > 0 ? how.threads : usual_threads();
+                       if (kernel.model() != nullptr)
+                           check_memory_of_interpreter<R>(kernel, shape, threads, how.count > 0 ? how.count : all.size);
                        detail::run_statistics used;
                        current_tape = kernel.model();
-                       kernel.cpu().run(&all, &how, how.threads > 0 ? how.threads : usual_threads(),
-                                        current_tape != nullptr ? &start_tape_team : &start_team, &used);
+                       kernel.cpu().run(&all, &how, threads, current_tape != nullptr ? &start_tape_team : &start_team,
+                                        &used);
                        return used;
                    },
                    static_cast<openmp::instruction_set>(kernel.cpu().instruction_set)};
@@ -202,8 +221,6 @@ std::unique_ptr<report<R>> solve(const std::vector<placed_kernel>& on, ensemble<
     } catch (const interruption&) {
         result->interrupted = true;
     }
-    result->first_state.resize(std::min(result->first_state.size(), used(instances.shape->names.states)));
-    result->first_parameter.resize(std::min(result->first_parameter.size(), used(instances.shape->names.parameters)));
     const detail::tangent_places& tangents = model.facts.tangents;
     if (instances.gpu != nullptr && !result->interrupted &&
         host::examines_stiffness<R>(*result, data.size, o, model.functions))

@@ -30,8 +30,8 @@ public:
     /// Throws `error` if the file is no kernel library of this version, not for this CPU, or was made from something
     /// else.
     library(const std::string& path, std::string_view made_from);
-    /// The interpreter of that size with a model of that many shared values; `may_stop`: its hooks may end phases.
-    library(const std::string& method, const std::string& size, int shared, int shared_integers, bool may_stop,
+    /// The interpreter with a model of that many shared values; `may_stop`: its hooks may end phases.
+    library(const std::string& method, int shared, int shared_integers, bool may_stop,
             std::shared_ptr<const interpreted> model);
     /// A program that NVRTC made, loaded on a GPU. Throws `error` if its driver refuses it.
     library(std::string image, int device);

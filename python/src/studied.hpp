@@ -25,7 +25,7 @@ struct model_of_study {
     std::string generator = {};  ///< what its `generate` does; empty for a model that has none
 };
 
-/// A model out of a library. An interpreter's has components besides, which the study does not set.
+/// A model out of a library.
 struct study_kernel {
     study_kernel(const device& on, const library& with, component_names names)
         : where(on), kernel(&with), shape(with.facts().model, std::move(names)) {}
@@ -67,8 +67,7 @@ public:
     double bytes_per_instance(const options& o) const override {
         double most = 0;
         for (const auto& [place, k] : kernels_) {
-            const options as_called = options_for(k.where, o);
-            most = std::max(most, called_for(k.where, as_called).bytes_per_instance(as_called));
+            most = std::max(most, called_for(k.where, o).bytes_per_instance(o));
         }
         return most;
     }
@@ -82,18 +81,6 @@ public:
     std::unique_ptr<studies::instance_memory<R>> allocate(const device& where, std::int64_t size) const override {
         return std::make_unique<memory>(kernel_for(where), size);
     }
-    /// Options with values for the states and events that an interpreter has besides.
-    options options_for(const device& where, options o) const override {
-        const named_shape& shape = kernel_for(where).shape;
-        for (per_component* const tolerances : {&o.relative_tolerance, &o.absolute_tolerance}) {
-            if (tolerances->size() == 1) continue;  // for all states
-            std::vector<double> all(static_cast<std::size_t>(shape.n_state), 1);
-            for (std::size_t c = 0; c < tolerances->size(); ++c) all.at(c) = (*tolerances)[c];
-            *tolerances = std::move(all);
-        }
-        o.events.resize(static_cast<std::size_t>(shape.n_event));
-        return o;
-    }
     detail::behaviour_function<R> behaviour_for(const device& where) const override {
         if (where.which() != device::kind::cpu) return nullptr;
         return *static_cast<const detail::behaviour_function<R>*>(kernel_for(where).kernel->cpu().behaviour);
@@ -101,15 +88,9 @@ public:
     std::string compiler_for(const device& where) const override {
         return where.which() == device::kind::cpu ? kernel_for(where).kernel->cpu().compiler : "";
     }
-    /// Sets what an interpreter has besides, and tables.
+    /// Sets tables.
     void set_others(studies::instance_memory<R>& instances, std::int64_t) const override {
         auto& d = instances.data();
-        const auto clear = [](auto& array, const std::vector<std::string>& used) {
-            for (int c = static_cast<int>(used.size()); c < array.components(); ++c) array.fill_component(c, R(0));
-        };
-        clear(d.state, model_.names.states);
-        clear(d.parameter, model_.names.parameters);
-        clear(d.accessory, model_.names.accessories);
         const std::size_t first = model_.names.shared.size() - model_.tables.size();
         for (std::size_t i = 0; i < model_.tables.size(); ++i)
             d.shared.data()[first + i] = static_cast<R>(model_.tables[i]);

@@ -3,40 +3,75 @@
 #include "tape.hpp"
 
 #include <algorithm>
+#include <cstdlib>
+#include <exception>
 #include <string>
 #include <utility>
 
 #include "interpreted.hpp"
 #include "myriad/host/core/error.hpp"
+#include "tape_instances.hpp"
+#include "tape_kernel.hpp"
 #include "threads.hpp"
 
 namespace myriad::python {
 
 __thread const tape* current_tape = nullptr;
+__thread tape_memory* current_memory = nullptr;
 
-#define MYRIAD_TAPE_KERNEL(method, size) const kernel_library* tape_##method##_##size();
-#define MYRIAD_TAPE_KERNELS(size, ...) MYRIAD_TAPE_METHODS(MYRIAD_TAPE_KERNEL, size)
-MYRIAD_TAPE_SIZES(MYRIAD_TAPE_KERNELS)
-#undef MYRIAD_TAPE_KERNEL
+tape_memory::tape_memory() : before_(current_memory) { current_memory = this; }
+tape_memory::~tape_memory() {
+    current_memory = before_;
+    while (chunks_ != nullptr) to_system(std::exchange(chunks_, chunks_->next));
+}
+void* tape_memory::from_system(std::size_t bytes) noexcept {
+    void* const found = std::aligned_alloc(smallest, bytes);
+    if (found == nullptr) std::terminate();  // what a call needs is checked before it
+    return found;
+}
+void tape_memory::to_system(void* memory) noexcept { std::free(memory); }
+void* tape_memory::grow(int size_class) noexcept {
+    constexpr std::size_t usual = std::size_t{1} << 16;
+    const std::size_t bytes = smallest << size_class;
+    const auto chunk_of = [this](std::size_t size) {
+        auto* const made = static_cast<block*>(from_system(smallest + size));
+        made->next = std::exchange(chunks_, made);
+        return reinterpret_cast<char*>(made) + smallest;
+    };
+    if (bytes > usual / 4) return chunk_of(bytes);
+    if (static_cast<std::size_t>(end_ - next_) < bytes) {
+        next_ = chunk_of(usual);
+        end_ = next_ + usual;
+    }
+    return std::exchange(next_, next_ + bytes);
+}
+
+#define MYRIAD_DECLARE_KERNEL(method, kind) tape_kernel tape_##method##_##kind();
+#define MYRIAD_DECLARE_KERNELS(kind) MYRIAD_TAPE_METHODS(MYRIAD_DECLARE_KERNEL, kind)
+MYRIAD_TAPE_KINDS(MYRIAD_DECLARE_KERNELS)
+#undef MYRIAD_DECLARE_KERNEL
 
 namespace {
 
 struct named_kernel {
     const char* method;
-    const char* size;
-    const kernel_library* (*get)();
+    const char* kind;
+    tape_kernel (*get)();
 };
 constexpr named_kernel kernels[] = {
-#define MYRIAD_TAPE_KERNEL(method, size) {#method, #size, &tape_##method##_##size},
-    MYRIAD_TAPE_SIZES(MYRIAD_TAPE_KERNELS)
-#undef MYRIAD_TAPE_KERNEL
-#undef MYRIAD_TAPE_KERNELS
+#define MYRIAD_DECLARE_KERNEL(method, kind) {#method, #kind, &tape_##method##_##kind},
+    MYRIAD_TAPE_KINDS(MYRIAD_DECLARE_KERNELS)
+#undef MYRIAD_DECLARE_KERNEL
+#undef MYRIAD_DECLARE_KERNELS
 };
-constexpr int most_of_a_kind = std::max({
-#define MYRIAD_TAPE_MOST(size, ...) tape_sizes::size::n_event, tape_sizes::size::n_trigger,
-    MYRIAD_TAPE_SIZES(MYRIAD_TAPE_MOST)
-#undef MYRIAD_TAPE_MOST
-});
+
+/// Registers that a function uses.
+std::int32_t registers_of(const tape_function& f) {
+    int most = 0;
+    for (const tape_step* step = f.begin; step != f.end; ++step)
+        most = std::max({most, step->to + 1, step->a + 1, step->b + 1, step->c + 1});
+    return most;
+}
 
 }  // namespace
 
@@ -45,32 +80,56 @@ std::vector<std::string> interpreted_methods() {
     return {MYRIAD_TAPE_METHODS(MYRIAD_TAPE_NAME)};
 #undef MYRIAD_TAPE_NAME
 }
-std::vector<std::string> interpreter_sizes() {
-#define MYRIAD_TAPE_NAME(name, ...) #name,
-    return {MYRIAD_TAPE_SIZES(MYRIAD_TAPE_NAME)};
-#undef MYRIAD_TAPE_NAME
-}
 std::vector<std::string> tape_operations() { return {std::begin(tape_names), std::end(tape_names)}; }
 
-const kernel_library& interpreter(const std::string& method, const std::string& size) {
-    for (const named_kernel& k : kernels)
-        if (method == k.method && size == k.size) return *k.get();
-    throw error(message("there is no interpreter of size ", size, " with the method ", method));
+openmp::instruction_set instructions_of_interpreter() {
+    return static_cast<openmp::instruction_set>(kernels[0].get().instruction_set);
 }
 
-interpreted::interpreted(const tape_functions& functions, std::vector<tape_step> steps, const tape_triggers& triggers)
-    : steps_(std::move(steps)) {
+kernel_library interpreter(const std::string& method, const tape& model, int shared, int shared_integers) {
+    const tape_lengths& n = model.length;
+    const bool with_triggers = n.stop > 0 || n.trigger > 0;
+    const std::string kind = with_triggers ? "with_triggers" : "in_packs";
+    for (const named_kernel& k : kernels) {
+        if (method != k.method || kind != k.kind) continue;
+        const tape_kernel found = k.get();
+        kernel_library made{};
+        made.facts = {interface_version, sizeof(double), {}, found.call, {}};
+        detail::model_numbers& numbers = made.facts.model;
+        numbers.n_state = n.state, numbers.n_parameter = n.parameter, numbers.n_event = n.event;
+        numbers.n_accessory = n.accessory, numbers.n_integer_accessory = n.integer_accessory;
+        numbers.n_shared = shared, numbers.n_shared_integer = shared_integers;
+        numbers.writes_parameters = true;
+        if (found.solves_linear_systems) {
+            const tape_matrix& of = model.matrix;
+            const std::int32_t all = n.state * n.state;
+            made.facts.matrix = {n.state, of.entries > 0 ? of.entries : all,
+                                 of.factor_entries > 0 ? of.factor_entries : all,
+                                 !model.jacobian.empty() ? 0
+                                 : of.entries > 0        ? of.groups
+                                                         : n.state,
+                                 false};
+        }
+        made.instruction_set = found.instruction_set;
+        made.run = found.run;
+        const auto of_instances = instances_of_tape(with_triggers);
+        made.functions = of_instances.functions;
+        made.behaviour = of_instances.behaviour;
+        return made;
+    }
+    throw error(message("there is no interpreter with the method ", method));
+}
+
+interpreted::interpreted(const tape_functions& functions, std::vector<tape_step> steps, const tape_facts& facts)
+    : steps_(std::move(steps)), matrix_(facts.length.state, facts.entries) {
     const auto number_of_steps = static_cast<std::uint32_t>(steps_.size());
-    for (const tape_step& step : steps_)
-        require(std::max({step.to, step.b, step.c}) < tape_registers, "a tape names a register beyond ",
-                tape_registers);
     for (const auto& several : functions) {
         std::vector<tape_function>& made = series_.emplace_back();
         for (const auto& [begin, end] : several) {
             require(begin <= end && end <= number_of_steps, "a tape's function is out of range");
             made.push_back({steps_.data() + begin, steps_.data() + end});
+            made.back().registers = registers_of(made.back());
         }
-        made.resize(std::max(made.size(), std::size_t{most_of_a_kind}));
     }
     std::size_t next = 1;
 #define MYRIAD_TAPE_MEMBER(name) \
@@ -78,13 +137,20 @@ interpreted::interpreted(const tape_functions& functions, std::vector<tape_step>
     MYRIAD_TAPE_SERIES(MYRIAD_TAPE_MEMBER)
 #undef MYRIAD_TAPE_MEMBER
     const std::vector<tape_function>& first = series_.front();
+    require(first.size() == 7, "a tape has ", first.size(), " functions instead of seven");
     tape_.rhs = first[0], tape_.events = first[1], tape_.initialise = first[2], tape_.after_step = first[3],
-    tape_.finalise = first[4], tape_.generate = first[5];
-    for (const int trigger : triggers.false_at_first) tape_.false_at_first |= std::uint64_t{1} << trigger;
-    for (const int trigger : triggers.lapsing) tape_.lapsing |= std::uint64_t{1} << trigger;
-    tape_.queue = triggers.queue;
-    tape_.due = triggers.due;
-    tape_.seed = triggers.seed;
+    tape_.finalise = first[4], tape_.generate = first[5], tape_.jacobian = first[6];
+    const auto triggers = static_cast<std::size_t>(facts.length.trigger) + 1;
+    false_at_first_.reset(new bool[triggers]()), lapsing_.reset(new bool[triggers]());
+    for (const int trigger : facts.false_at_first) false_at_first_[static_cast<std::size_t>(trigger)] = true;
+    for (const int trigger : facts.lapsing) lapsing_[static_cast<std::size_t>(trigger)] = true;
+    tape_.false_at_first = false_at_first_.get(), tape_.lapsing = lapsing_.get();
+    tape_.length = facts.length;
+    tape_.matrix = matrix_.tables();
+    tape_.autonomous = facts.autonomous;
+    tape_.queue = facts.queue;
+    tape_.due = facts.due;
+    tape_.seed = facts.seed;
 }
 
 void start_tape_team(openmp::team* all) {
@@ -97,6 +163,7 @@ void start_tape_team(openmp::team* all) {
     with_tape.body = [](void* context, int part) {
         const work& w = *static_cast<const work*>(context);
         current_tape = w.what;
+        const tape_memory memory;
         w.all->body(w.all->context, part);
     };
     start_team(&with_tape);

@@ -3,6 +3,7 @@
 // standard library's containers, as it is compiled for an instruction set of its own.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 // Operations with one, two and three arguments, by the names of the traced expressions, and what they call.
@@ -41,10 +42,12 @@
     X(state)                 \
     X(parameter) X(accessory) X(integer_accessory) X(next_step) X(end_phase) X(end_instance) X(waiting) X(put) X(drop)
 // The methods that the interpreter is compiled for.
-#define MYRIAD_TAPE_METHODS(X, ...)           \
-    X(tsitouras_5 __VA_OPT__(, ) __VA_ARGS__) \
-    X(cash_karp __VA_OPT__(, ) __VA_ARGS__)   \
-    X(dormand_prince_5 __VA_OPT__(, ) __VA_ARGS__) X(runge_kutta_4 __VA_OPT__(, ) __VA_ARGS__)
+#define MYRIAD_TAPE_METHODS(X, ...)                \
+    X(tsitouras_5 __VA_OPT__(, ) __VA_ARGS__)      \
+    X(cash_karp __VA_OPT__(, ) __VA_ARGS__)        \
+    X(dormand_prince_5 __VA_OPT__(, ) __VA_ARGS__) \
+    X(runge_kutta_4 __VA_OPT__(, ) __VA_ARGS__)    \
+    X(rosenbrock_23 __VA_OPT__(, ) __VA_ARGS__) X(rodas_5p __VA_OPT__(, ) __VA_ARGS__)
 
 namespace myriad::python {
 
@@ -108,32 +111,24 @@ struct tape_step {
 struct tape_function {
     const tape_step* begin = nullptr;
     const tape_step* end = nullptr;
+    std::int32_t registers = 0;  ///< that it uses
     bool empty() const { return begin == end; }
 };
 
-inline constexpr int tape_registers = 512;
-inline constexpr int tape_batches = 2;  ///< SIMD registers per pack
+inline constexpr int most_registers = 0xffff;  ///< of a function, and components of a kind
+inline constexpr int tape_batches = 2;         ///< SIMD registers per pack
 
-/// The most that an interpreter has of each kind of component, of stops and of triggers.
-template <int states, int parameters, int accessories, int integers, int events, int stops, int triggers,
-          bool lane_by_lane>
-struct tape_size {
-    static constexpr bool scalar_only = lane_by_lane;
-    static constexpr int n_stop = stops, n_trigger = triggers;
-    static constexpr int n_state = states, n_parameter = parameters, n_accessory = accessories,
-                         n_integer_accessory = integers, n_event = events;
-};
-// The interpreters, from the smallest: a model has the first that it fits in, as what it does not use costs time and
-// memory; models with more need a compiler. The large ones have no packs, which more than double the time to compile.
-#define MYRIAD_TAPE_SIZES(X)                   \
-    X(small, 8, 16, 6, 3, 3, 0, 0, false)      \
-    X(large, 128, 128, 128, 8, 64, 0, 0, true) \
-    X(with_triggers, 128, 128, 512, 256, 64, 3, 128, true)
-namespace tape_sizes {
-#define MYRIAD_TAPE_SIZE(name, ...) using name = tape_size<__VA_ARGS__>;
-MYRIAD_TAPE_SIZES(MYRIAD_TAPE_SIZE)
-#undef MYRIAD_TAPE_SIZE
-}  // namespace tape_sizes
+inline constexpr int tape_events = 251, tape_triggers = 241, tape_stops = 37;  // most of them
+// The kinds of components of which a tape has a number of its own, and the most that there may be.
+#define MYRIAD_TAPE_LENGTHS(X)   \
+    X(state, most_registers)     \
+    X(parameter, most_registers) \
+    X(accessory, most_registers) \
+    X(integer_accessory, most_registers) X(event, tape_events) X(stop, tape_stops) X(trigger, tape_triggers)
+
+/// The interpreters: for packs of models without stops and triggers, and for one instance at a time of all others.
+/// Compiling both as one for packs would take three times as long.
+#define MYRIAD_TAPE_KINDS(X) X(in_packs) X(with_triggers)
 
 inline constexpr int tape_values = 32;  ///< that an action which waits can have
 
@@ -147,19 +142,96 @@ struct tape_queue {
 #define MYRIAD_TAPE_SERIES(X) \
     X(after_event) X(stop_time) X(after_stop) X(condition) X(after_trigger) X(late_action) X(priority)
 
+// Between these limits the factors of a stiff method's matrix are sparse, as those of a model that is compiled.
+inline constexpr int largest_dense_matrix = 6, most_matrix_updates = 4096;
+
+/// The matrix of stiff methods: the entries of the Jacobian that may differ from zero, and the tables by which it is
+/// factorised, as `lu_tables`; without entries it is dense, and its derivatives are found one column after the other.
+struct tape_matrix {
+    std::int32_t entries = 0, groups = 0;
+    const std::int32_t *row = nullptr, *column = nullptr;                                  // of each entry
+    const std::int32_t *group_of_column = nullptr, *begin = nullptr, *in_group = nullptr;  // entries of each group
+    std::int32_t factor_entries = 0;                                                       // 0: dense
+    const std::int32_t *pivot = nullptr, *diagonal = nullptr, *lower_begin = nullptr, *upper_begin = nullptr,
+                       *lower_entry = nullptr, *lower_row = nullptr, *upper_entry = nullptr, *upper_column = nullptr,
+                       *first_update = nullptr, *target = nullptr, *target_row = nullptr, *position = nullptr,
+                       *pivot_row = nullptr;
+};
+
+/// How many components of each kind a model has.
+struct tape_lengths {
+#define MYRIAD_TAPE_LENGTH(kind, most) std::int32_t kind = 0;
+    MYRIAD_TAPE_LENGTHS(MYRIAD_TAPE_LENGTH)
+#undef MYRIAD_TAPE_LENGTH
+};
+
 /// A model.
 struct tape {
+    tape_lengths length;
+    tape_function jacobian;  ///< the derivatives in the order of the matrix's entries, or none
+    tape_matrix matrix;
+    bool autonomous = false;  ///< the right-hand side does not read the time
     tape_function rhs, events, initialise, after_step, finalise, generate;
 #define MYRIAD_TAPE_MEMBER(name) const tape_function* name = nullptr;  // for as many as any interpreter has
     MYRIAD_TAPE_SERIES(MYRIAD_TAPE_MEMBER)
 #undef MYRIAD_TAPE_MEMBER
-    std::uint64_t false_at_first = 0, lapsing = 0;  ///< triggers whose initial value is false; that do not persist
+    const bool *false_at_first = nullptr,
+               *lapsing = nullptr;  ///< triggers whose initial value is false; that do not persist
     tape_queue queue;
     int due = -1;            ///< the stop at which actions run that have waited
     std::int64_t seed = -1;  ///< of their order where priorities tie; -1: that in which they were put
 };
 
-/// The tape that the calling thread runs.
-extern __thread const tape* current_tape;
+/// Memory of a thread that runs a tape, from which vectors are taken many times a step: blocks by powers of two, which
+/// are kept. A thread without one asks the system.
+class tape_memory {
+public:
+    tape_memory();  ///< is the calling thread's until it is destroyed
+    tape_memory(const tape_memory&) = delete;
+    tape_memory& operator=(const tape_memory&) = delete;
+    ~tape_memory();
+
+    static int class_of(std::size_t bytes) {
+        return bytes <= smallest ? 0 : 64 - __builtin_clzll((bytes - 1) / smallest);
+    }
+    static inline void* take(int size_class) noexcept;
+    static inline void give(void* block, int size_class) noexcept;
+
+private:
+    static constexpr std::size_t smallest = 64;  // bytes; all blocks are aligned so
+    struct block {
+        block* next;
+    };
+    static void* from_system(std::size_t bytes) noexcept;
+    static void to_system(void* memory) noexcept;
+    void* grow(int size_class) noexcept;
+
+    block* free_[48]{};
+    block* chunks_ = nullptr;
+    char *next_ = nullptr, *end_ = nullptr;  // what is left of the last chunk
+    tape_memory* before_;
+};
+
+// In the part of a thread's memory that is found without a call.
+#define MYRIAD_TAPE_THREAD __attribute__((tls_model("initial-exec")))
+/// The tape that the calling thread runs, and its memory.
+extern __thread const tape* current_tape MYRIAD_TAPE_THREAD;
+extern __thread tape_memory* current_memory MYRIAD_TAPE_THREAD;
+
+inline void* tape_memory::take(int size_class) noexcept {
+    tape_memory* const from = current_memory;
+    if (from == nullptr) return from_system(smallest << size_class);
+    block* const found = from->free_[size_class];
+    if (found == nullptr) return from->grow(size_class);
+    from->free_[size_class] = found->next;
+    return found;
+}
+inline void tape_memory::give(void* memory, int size_class) noexcept {
+    tape_memory* const to = current_memory;
+    if (to == nullptr) return to_system(memory);
+    block* const given = static_cast<block*>(memory);
+    given->next = to->free_[size_class];
+    to->free_[size_class] = given;
+}
 
 }  // namespace myriad::python

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
 // What checks and notes call of a traced model for single instances, by its tape: of models with any number of
 // components, whatever kernel integrates them.
+// clang-format off
+#include "tape_model.hpp"  // before the kernel body
+// clang-format on
+
 #include "tape_instances.hpp"
 
 #include <memory>
 
 #include "myriad/host/checks/event_resolution.hpp"
 #include "myriad/host/checks/instance_inputs.hpp"
-#include "tape_model.hpp"
 
 namespace myriad::python {
 
@@ -81,7 +84,23 @@ void linearise(const detail::argument_head<R>& a, std::int64_t i, R t, const R* 
     }
 }
 
+template <class Model, class R>
+void generate(const detail::argument_head<R>& a, std::uint64_t seed, std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i) detail::generate_instance<Model, R>(a, a, a.shared, seed, i);
+}
+template <class Model, class R>
+constexpr detail::instance_functions<R> functions_of_model{.generate = &generate<Model, R>};
+template <class Model, class R>
+constexpr detail::behaviour_function<R> behaviour_of_model = &detail::show_behaviour<Model, R>;
+
 }  // namespace
+
+called_instances instances_of_tape(bool with_triggers) {
+    using plain = tape_models::in_packs;
+    using triggered = tape_models::with_triggers;
+    if (with_triggers) return {&functions_of_model<triggered, double>, &behaviour_of_model<triggered, double>};
+    return {&functions_of_model<plain, double>, &behaviour_of_model<plain, double>};
+}
 
 template <class R>
 detail::instance_functions<R> functions_of_tape(const tape& model, double (*stability_limit)()) {

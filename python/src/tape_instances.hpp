@@ -12,4 +12,10 @@ namespace myriad::python {
 template <class R>
 detail::instance_functions<R> functions_of_tape(const tape& model, double (*stability_limit)());
 
+/// What studies call of single instances of an interpreted model: as in `kernel_library`.
+struct called_instances {
+    const void *functions, *behaviour;
+};
+called_instances instances_of_tape(bool with_triggers);
+
 }  // namespace myriad::python

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
-// The model that runs a tape; components beyond the tape's are not used, and stay zero.
+// The model that runs a tape, with as many components as that has.
 #pragma once
+
+// clang-format off
+#include "tape_vectors.hpp"  // before the kernel body
+// clang-format on
 
 #include <limits>
 #include <type_traits>
 
 #include "myriad/kernel/model/action_queue.hpp"
 #include "myriad/python/kernel_library.hpp"
-#include "tape.hpp"
 
 namespace myriad::python {
 
@@ -87,7 +90,8 @@ inline void run_on_waiting_action(const tape_step& step, tape_action& waiting, d
 /// Runs a function. One copy for each kind of arguments, since kernels call it at every stage.
 template <class R, class Source>
 [[gnu::noinline]] void run_tape(const tape_function& f, const Source& s) {
-    R r[tape_registers];
+    tape_array<R> registers(static_cast<std::size_t>(f.registers));
+    R* const r = registers.data();
     const auto truth = [](const auto& mask) { return myriad::select(mask, R(1), R(0)); };
     for (const tape_step* step = f.begin; step != f.end; ++step) {
         const auto [value, to, a, b, c, code] = *step;
@@ -288,39 +292,40 @@ inline void run_in_generate(const tape_step& step, Instance& instance, R* r) {
     }
 }
 
-/// `size`: a `tape_size`.
-template <class size>
+template <bool one_by_one>
 struct tape_model {
     static constexpr bool writes_parameters = true;
     static constexpr bool rare_events = true;
-    static constexpr bool scalar_only = size::scalar_only;
+    static constexpr bool large_rhs = true;
+    static constexpr bool scalar_only = one_by_one;
     static constexpr int pack_batches = tape_batches;
-    enum state { n_state = size::n_state };
-    enum parameter { n_parameter = size::n_parameter };
+    static constexpr extent n_state = tape_extent::state, n_parameter = tape_extent::parameter,
+                            n_accessory = tape_extent::accessory, n_event = tape_extent::event,
+                            n_integer_accessory = tape_extent::integer_accessory;
     enum shared { n_shared = 1 };
     enum shared_integer { n_shared_integer = 1 };
-    enum accessory { n_accessory = size::n_accessory };
-    enum integer_accessory { n_integer_accessory = size::n_integer_accessory };
-    enum event { n_event = size::n_event };
 
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto t, const myriad::vec<R, n_state>& y, const auto& p) {
-        R slopes[n_state];
-        for (R& slope : slopes) slope = R(0);
-        run(current_tape->rhs, t, y, p, slopes);
-        myriad::vec<R, n_state> all;
-        for (int c = 0; c < n_state; ++c) all[c] = slopes[c];
-        return all;
+        myriad::vec<R, n_state> slopes;
+        if constexpr (is_dual<R>) {  // the derivative by the time, which the tape does not read
+            if (current_tape->autonomous && detail::any(R(t).derivative != decltype(R::derivative)(0))) return slopes;
+        }
+        run(current_tape->rhs, t, y, p, &slopes[0]);
+        return slopes;
     }
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto t, const myriad::vec<R, n_state>& y, const auto& p) {
-        R values[n_event];
-        for (R& value : values) value = R(1);  // an event that is not there never happens
-        run(current_tape->events, t, y, p, values);
-        myriad::vec<R, n_event> all;
-        for (int c = 0; c < n_event; ++c) all[c] = values[c];
-        return all;
+        myriad::vec<R, n_event> values;
+        run(current_tape->events, t, y, p, &values[0]);
+        return values;
     }
+    /// The entries of the Jacobian.
+    template <class S>
+    static void derivatives(const S& t, const myriad::vec<S, n_state>& y, const auto& p, S* entries) {
+        run(current_tape->jacobian, t, y, p, entries);
+    }
+
     MYRIAD_FUNCTION static void initialise(auto& lane) { hook(current_tape->initialise, lane); }
     template <class R>
     MYRIAD_FUNCTION static auto after_step(auto& lane) {
@@ -378,11 +383,9 @@ struct no_inputs {
 };
 
 /// The same with stops and triggers.
-template <class size>
-struct triggered_tape_model : tape_model<size> {
+struct triggered_tape_model : tape_model<true> {
     using queue = basic_action_queue<tape_layout>;
-    enum stop { n_stop = size::n_stop };
-    enum trigger { n_trigger = size::n_trigger };
+    static constexpr extent n_stop = tape_extent::stop, n_trigger = tape_extent::trigger;
 
     template <class R>
     [[gnu::noinline]] static R stop_time(int stop, int number, const auto& p) {
@@ -392,17 +395,17 @@ struct triggered_tape_model : tape_model<size> {
         return time;
     }
     [[gnu::noinline]] static myriad::action after_stop(int stop, int, auto& lane) {
-        if (stop != current_tape->due) return tape_model<size>::hook(current_tape->after_stop[stop], lane);
+        if (stop != current_tape->due) return hook(current_tape->after_stop[stop], lane);
         tape_action waiting;
         const auto priority = [&](int action) {
             tape_action one;
-            tape_model<size>::hook(current_tape->priority[action], lane, &one);
+            hook(current_tape->priority[action], lane, &one);
             return one.priority;
         };
         const auto taken = queue::take(lane, priority, current_tape->seed);
         if (taken.action < 0) return myriad::action::proceed;
         waiting.value = taken.value;
-        return tape_model<size>::hook(current_tape->late_action[taken.action], lane, &waiting);
+        return hook(current_tape->late_action[taken.action], lane, &waiting);
     }
     [[gnu::noinline]] static bool condition(int trigger, const auto& positive) {
         double holds = 0.0;
@@ -410,18 +413,17 @@ struct triggered_tape_model : tape_model<size> {
              no_inputs{}, holds);
         return holds != 0.0;
     }
-    MYRIAD_FUNCTION static bool initial_value(int trigger) { return !has(current_tape->false_at_first, trigger); }
-    MYRIAD_FUNCTION static bool persistent(int trigger) { return !has(current_tape->lapsing, trigger); }
+    static bool initial_value(int trigger) { return !current_tape->false_at_first[trigger]; }
+    static bool persistent(int trigger) { return !current_tape->lapsing[trigger]; }
     [[gnu::noinline]] static myriad::action after_trigger(int trigger, auto& lane) {
         tape_action waiting;
-        const myriad::action wanted = tape_model<size>::hook(current_tape->after_trigger[trigger], lane, &waiting);
+        const myriad::action wanted = hook(current_tape->after_trigger[trigger], lane, &waiting);
         if (waiting.drop >= 0) queue::cancel(lane, waiting.drop);
         const bool fits = waiting.put < 0 || queue::put(lane, waiting.put, waiting.time, waiting.value);
         return fits ? wanted : myriad::action::overflow;
     }
 
 private:
-    static bool has(std::uint64_t triggers, int trigger) { return (triggers >> trigger & 1u) != 0; }
     /// The one result of a function.
     template <class R, class States, class Inputs>
     static void read(const tape_function& f, const R& t, const States& y, const Inputs& p, R& result) {
@@ -429,7 +431,168 @@ private:
     }
 };
 
-template <class size>
-using model_of_tape = std::conditional_t<(size::n_trigger > 0), triggered_tape_model<size>, tape_model<size>>;
+/// The models of MYRIAD_TAPE_KINDS.
+namespace tape_models {
+using in_packs = tape_model<false>;
+using with_triggers = triggered_tape_model;
+}  // namespace tape_models
+
+/// The factors of a stiff method's matrix: as the kernel of a model that is compiled would have them.
+template <class S>
+class tape_factors {
+    static constexpr extent n_state = tape_extent::state;
+    static_assert(largest_dense_matrix == detail::largest_matrix_in_registers<double> &&
+                  most_matrix_updates == detail::most_updates);
+    using dense_factors = detail::lu_factors<S, n_state>;
+    using R = real_of<S>;
+
+public:
+    tape_factors()
+        : of_(current_tape->matrix), n_(current_tape->length.state), a_(static_cast<std::size_t>(of_.factor_entries)),
+          sizes_(static_cast<std::size_t>(is_dense() ? 0 : n_)), dense_(1) {
+        if (is_dense()) ::new (static_cast<void*>(dense_.data())) dense_factors;
+    }
+    tape_factors(const tape_factors&) = delete;
+    tape_factors& operator=(const tape_factors&) = delete;
+    ~tape_factors() {
+        if (is_dense()) dense_[0].~dense_factors();
+    }
+
+    /// Factorises shift I - J. Returns false in lanes where that is singular.
+    template <class Model>
+    mask_of<S> factorise(const S& t, const S& shift, const vec<S, n_state>& y, const inputs<Model, S>& p) {
+        return is_dense() ? factorise_dense<Model>(t, shift, y, p) : factorise_sparse<Model>(t, shift, y, p);
+    }
+    void solve(vec<S, n_state>& b) const {
+        if (is_dense()) return detail::solve_factorised(dense_[0], b);
+        for (int s = 0; s < n_; ++s) {
+            const S x = b[of_.pivot[s]];
+            for (int l = of_.lower_begin[s]; l < of_.lower_begin[s + 1]; ++l) {
+                S& other = b[of_.lower_row[l]];
+                other = fma(-a_[of_.lower_entry[l]], x, other);
+            }
+        }
+        for (int s = n_ - 1; s >= 0; --s) {
+            const int row = of_.pivot[s];
+            S x = b[row];
+            for (int u = of_.upper_begin[s]; u < of_.upper_begin[s + 1]; ++u)
+                x = fma(-a_[of_.upper_entry[u]], b[of_.upper_column[u]], x);
+            b[row] = x * a_[of_.diagonal[row]];
+        }
+    }
+
+private:
+    bool is_dense() const { return of_.factor_entries == 0; }
+
+    template <class Model>
+    mask_of<S> factorise_dense(const S& t, const S& shift, const vec<S, n_state>& y, const inputs<Model, S>& p) {
+        auto& a = dense_[0].a;
+        if (of_.entries == 0) {
+            detail::dual_jacobian<Model>(t, y, p, a);
+        } else {
+            each_entry<Model>(t, y, p, [&](int e, const S& derivative) { a[of_.row[e]][of_.column[e]] = derivative; });
+        }
+        for (int i = 0; i < n_; ++i) {
+            for (int j = 0; j < n_; ++j) a[i][j] = -a[i][j];
+            a[i][i] = shift + a[i][i];
+        }
+        return detail::factorise(dense_[0]);
+    }
+    template <class Model>
+    mask_of<S> factorise_sparse(const S& t, const S& shift, const vec<S, n_state>& y, const inputs<Model, S>& p) {
+        for (int e = 0; e < of_.factor_entries; ++e) a_[e] = S(R(0));
+        for (int i = 0; i < n_; ++i) {
+            a_[of_.diagonal[i]] = shift;
+            sizes_[i] = abs(shift);
+        }
+        each_entry<Model>(t, y, p, [&](int e, const S& derivative) {
+            S& place = a_[of_.position[e]];
+            place = place - derivative;
+            const int row = of_.pivot_row[e];
+            if (row >= 0) sizes_[row] = sizes_[row] + abs(derivative);
+        });
+        mask_of<S> regular = mask_of<S>(true);
+        for (int s = 0; s < n_; ++s) {
+            const int row = of_.pivot[s];
+            S& pivot = a_[of_.diagonal[row]];
+            const S size = abs(pivot), inverse = reciprocal(pivot);
+            regular = regular & (size > S(detail::least_pivot<R>) * sizes_[row]) & (abs(inverse) > S(R(0)));
+            pivot = inverse;
+            for (int l = of_.lower_begin[s]; l < of_.lower_begin[s + 1]; ++l) {
+                const S multiplier = a_[of_.lower_entry[l]] * inverse;
+                a_[of_.lower_entry[l]] = multiplier;
+                for (int u = of_.upper_begin[s]; u < of_.upper_begin[s + 1]; ++u) {
+                    const int update = of_.first_update[l] + u, row_of_pivot = of_.target_row[update];
+                    S& target = a_[of_.target[update]];
+                    const S right = a_[of_.upper_entry[u]];
+                    target = fma(-multiplier, right, target);
+                    if (row_of_pivot >= 0)
+                        sizes_[row_of_pivot] = fma(abs(multiplier), abs(right), sizes_[row_of_pivot]);
+                }
+            }
+        }
+        return regular;
+    }
+    /// Calls put(e, derivative) for the entries of the Jacobian: by the tape's function, or by dual numbers, one
+    /// evaluation of the right-hand side for each group of columns.
+    template <class Model, class Put>
+    void each_entry(const S& t, const vec<S, n_state>& y, const inputs<Model, S>& p, Put&& put) {
+        if (!current_tape->jacobian.empty()) {
+            tape_array<S> found(static_cast<std::size_t>(of_.entries));
+            Model::derivatives(t, y, p, found.data());
+            for (int e = 0; e < of_.entries; ++e) put(e, found[e]);
+            return;
+        }
+        for (int g = 0; g < of_.groups; ++g) {
+            auto seeded = detail::constants<dual<S>>(y);
+            for (int j = 0; j < n_; ++j) seeded[j].derivative = S(of_.group_of_column[j] == g ? R(1) : R(0));
+            const auto columns = detail::directional_derivative<Model>(dual<S>(t), seeded, p);
+            for (int k = of_.begin[g]; k < of_.begin[g + 1]; ++k)
+                put(of_.in_group[k], columns[of_.row[of_.in_group[k]]]);
+        }
+    }
+
+    const tape_matrix& of_;
+    int n_;
+    tape_array<S> a_, sizes_;  // of each pivot's row: the sum of the sizes of the terms that add up to the pivot
+    tape_array<dense_factors> dense_;
+};
 
 }  // namespace myriad::python
+
+namespace myriad::detail {
+
+template <class Model, class S>
+requires(python::is_name<n_state<Model>>) struct stage_factors_of<Model, S> {
+    using type = python::tape_factors<S>;
+};
+
+/// The arguments of an interpreter, whose arrays stay where they are.
+template <class Model, class R>
+requires(python::is_name<n_state<Model>>) struct argument_arrays<Model, R> {
+    static constexpr int words = python::tape_events / 32 + 1;
+    const R *relative_tolerance, *absolute_tolerance;
+    const event_arguments<R>* event;
+    std::uint32_t rising[words]{}, falling[words]{};
+    const std::int16_t *state_column, *accessory_column, *integer_accessory_column, *sample_column;
+
+    void point_to(const any_arguments<R>& from) {
+        const argument_offsets<R> at = from.offsets();
+        const auto take = [&](auto*& array, int offset) {
+            array = reinterpret_cast<std::remove_reference_t<decltype(array)>>(from.arrays + offset);
+        };
+        take(relative_tolerance, at.relative_tolerance);
+        take(absolute_tolerance, at.absolute_tolerance);
+        take(event, at.event);
+        take(state_column, at.state_column);
+        take(accessory_column, at.accessory_column);
+        take(integer_accessory_column, at.integer_accessory_column);
+        take(sample_column, at.sample_column);
+        const std::uint32_t *of_rising, *of_falling;
+        take(of_rising, at.rising);
+        take(of_falling, at.falling);
+        for (int k = 0; k <= from.model->n_event / 32; ++k) rising[k] = of_rising[k], falling[k] = of_falling[k];
+    }
+};
+
+}  // namespace myriad::detail

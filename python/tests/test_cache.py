@@ -386,12 +386,12 @@ def test_a_library_without_the_symbol_does_not_poison_the_process(tmp_path, monk
     made_from = by.made_from(source)
 
     def make_empty(folder):
-        by.compile("int nothing;\n", folder)
+        by.compile("int nothing;\n", folder, 300)
 
     for _ in range(3):
         with pytest.raises(my.Error, match="another compiled model for the one that was asked for"):
             compiled_files.obtain(made_from, make_empty, lambda path: compiler._load(by, path, made_from))
-    found = compiled_files.obtain(made_from, lambda folder: by.compile(source, folder),
+    found = compiled_files.obtain(made_from, lambda folder: by.compile(source, folder, 300),
                          lambda path: compiler._load(by, path, made_from))
     assert found.loaded.instruction_set
 
@@ -410,7 +410,7 @@ def test_a_model_that_does_not_compile_is_refused_where_sigchld_is_ignored(tmp_p
     script = ("import signal; signal.signal(signal.SIGCHLD, signal.SIG_IGN)\n"
               "from myriad_ode.kernels import compiler\n"
               "by = compiler.compiler()\n"
-              f"by.compile('int nothing = nobody;', {str(tmp_path)!r})")
+              f"by.compile('int nothing = nobody;', {str(tmp_path)!r}, 300)")
     told = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
     assert told.returncode == 1 and "the model does not compile" in told.stderr
 
@@ -503,7 +503,7 @@ def test_messages_of_compilers_may_be_in_any_encoding(tmp_path, monkeypatch):
     program.chmod(0o700)
     monkeypatch.setenv("MYRIAD_CXX", str(program))
     with pytest.raises(my.Error, match="does not compile .*: \N{REPLACEMENT CHARACTER}rger"):
-        compiler.find_compiler().compile("int nothing;", str(tmp_path))
+        compiler.find_compiler().compile("int nothing;", str(tmp_path), 300)
 
 
 def test_a_size_of_the_cache_that_is_no_number_of_bytes(tmp_path, monkeypatch):

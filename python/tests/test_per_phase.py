@@ -7,9 +7,8 @@ import pytest
 pytest.importorskip("libsbml")
 
 import myriad_ode as my  # noqa: E402
-from myriad_ode import _core  # noqa: E402
 from myriad_ode.symbolic.operations import cost  # noqa: E402
-from myriad_ode.models.once_per_phase import prepared  # noqa: E402
+from myriad_ode.models.once_per_phase import most_accessories, prepared  # noqa: E402
 from sbml_models import compartment, document, event, parameter, rate, reaction, species, variable  # noqa: E402
 
 _hill = [compartment("c", 2), species("S", concentration=3), species("P", concentration=0),
@@ -90,21 +89,20 @@ def test_an_event_reads_what_is_computed_once():
         assert run["seen"][i, -1] == pytest.approx(at, rel=1e-5)
 
 
-def test_a_model_is_interpreted_by_as_small_an_interpreter_as_before():
-    room = _core.tape_sizes["small"]["accessory"]
-    count = _core.tape_sizes["small"]["state"]
+def test_a_small_model_keeps_few_accessories():
+    room, count = most_accessories[0], 8
     parts = [parameter(f"{p}{i}", 1.5) for p in "ab" for i in range(count)]
     rates = [variable(f"x{i}", 1) for i in range(count)]
     model = my.read_sbml(document([*parts, *rates, *(rate(f"x{i}", f"-x{i} * pow(a{i}, b{i})")
                                                      for i in range(count))]))
     made = prepared(model)
-    assert len(model.parameters) <= _core.tape_sizes["small"]["parameter"] and len(made.accessories) == room
+    assert len(made.accessories) == room
     run = my.solve(model, time=(0, 1), interpreted=True)
     np.testing.assert_allclose(run["x7"], np.exp(-1.5**1.5), rtol=1e-5)
 
 
 def test_divisions_stay_where_there_is_no_room_for_the_reciprocals():
-    count = max(limits["accessory"] for limits in _core.tape_sizes.values()) + 5
+    count = most_accessories[-1] + 5
     parts = [parameter(f"a{i}", 2) for i in range(count)] + [variable(f"x{i}", 1) for i in range(count)]
     model = my.read_sbml(document([*parts, *(rate(f"x{i}", f"-x{i} / a{i}") for i in range(count))]))
     made = prepared(model)

@@ -50,7 +50,7 @@ def test_the_second_model_compiles_faster_with_the_same_kernel_as_without(prepar
     made = []
     for prepared_headers in (True, False):
         workplace = tmp_path_factory.mktemp("made")
-        assert by.compile(source, str(workplace)) == prepared_headers
+        assert by.compile(source, str(workplace), 300) == prepared_headers
         made.append((workplace / "model.so").read_bytes())
         cache.clear()
     assert made[0] == made[1]
@@ -67,9 +67,9 @@ def test_headers_that_others_may_write_are_not_used(prepared):
     folder, _, by = prepared
     path, = headers_in(folder)
     os.chmod(path, 0o666)
-    assert not by.compile("int one;", str(folder))
+    assert not by.compile("int one;", str(folder), 300)
     os.chmod(path, 0o600)
-    assert by.compile("int one;", str(folder))
+    assert by.compile("int one;", str(folder), 300)
 
 
 def test_the_cache_is_emptied_of_them(prepared):

@@ -105,7 +105,7 @@ def test_values_of_a_run_are_given_for_all_units():
 
 
 def test_a_full_coupling_of_many_units_is_written_without_making_all_derivatives(monkeypatch):
-    from myriad_ode.codegen import cpp_writer as cpp
+    from myriad_ode.codegen import jacobian
 
     def refuse(*_):
         raise AssertionError("16384 derivatives are made, and left out")
@@ -113,7 +113,7 @@ def test_a_full_coupling_of_many_units_is_written_without_making_all_derivatives
     units = my.units(128)
     angle = units.state("angle")
     model = my.model({angle: units.full_coupling("A", np.ones((128, 128))) @ np.sin(angle)})
-    monkeypatch.setattr(cpp, "derivatives", refuse)
+    monkeypatch.setattr(jacobian, "derivatives", refuse)
     assert "jacobian" not in model.cpp()
 
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
@@ -14,13 +15,15 @@
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "myriad/host/core/error.hpp"
 
 namespace myriad::compiling {
 
-child_process::child_process(const std::vector<std::string>& words, const std::string& output) {
+child_process::child_process(const std::vector<std::string>& words, const std::string& output, ended_with with)
+    : with_(with) {
     std::vector<char*> arguments;
     for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
     arguments.push_back(nullptr);
@@ -38,14 +41,16 @@ child_process::child_process(const std::vector<std::string>& words, const std::s
     sigemptyset(&usual);
     sigaddset(&usual, SIGCHLD);
     posix_spawnattr_setsigdefault(&how, &usual);
-    posix_spawnattr_setflags(&how, POSIX_SPAWN_SETSIGDEF);
+    const bool has_group = with == ended_with::its_programs;
+    posix_spawnattr_setpgroup(&how, 0);
+    posix_spawnattr_setflags(&how, static_cast<short>(POSIX_SPAWN_SETSIGDEF | (has_group ? POSIX_SPAWN_SETPGROUP : 0)));
     if (posix_spawnp(&id_, arguments[0], &files, &how, arguments.data(), environ) != 0) id_ = -1;
     posix_spawnattr_destroy(&how);
     posix_spawn_file_actions_destroy(&files);
 }
 
 child_process::~child_process() {
-    if (id_ >= 0) ::kill(id_, SIGKILL);
+    if (id_ >= 0) ::kill(with_ == ended_with::its_programs ? -id_ : id_, SIGKILL);
     wait();
 }
 
@@ -59,8 +64,36 @@ int child_process::wait(const signal_check& check) {
         }
         if (check) check();
     }
+    note(status);
+    return status_;
+}
+
+bool child_process::wait_for(double seconds, const signal_check& check) {
+    constexpr long shortest = 1'000'000, longest = 20'000'000;  // ns between two looks
+    const auto begin = std::chrono::steady_clock::now();
+    for (long nap = shortest; id_ >= 0; nap = std::min(longest, nap + nap / 4)) {
+        int status = 0;
+        const pid_t found = waitpid(id_, &status, WNOHANG);
+        if (found == id_) {
+            note(status);
+            break;
+        }
+        if (found < 0 && errno != EINTR) {
+            id_ = -1;
+            status_ = unknown;
+            break;
+        }
+        if (check) check();
+        if (std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() > seconds) return false;
+        const timespec time{0, nap};
+        nanosleep(&time, nullptr);
+    }
+    return true;
+}
+
+void child_process::note(int waited) {
     id_ = -1;
-    return status_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128;
+    status_ = WIFEXITED(waited) ? WEXITSTATUS(waited) : 128;
 }
 
 namespace {

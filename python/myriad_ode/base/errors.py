@@ -10,7 +10,6 @@ import threading
 import types
 from collections.abc import Collection, Iterable, Mapping
 
-import numpy as np
 
 _here = os.path.dirname(os.path.dirname(os.path.abspath(__file__))) + os.sep  # the package's folder
 
@@ -78,8 +77,9 @@ def renamed(what: str, name: str, names: Mapping[str, str]) -> str:
 
 def refuse_masked(values: object, what: str) -> None:
     """Refuses a masked array, whose hidden values would count as given."""
-    if isinstance(values, np.ma.MaskedArray):
-        if np.ma.is_masked(values):
+    masked = sys.modules.get("numpy.ma")  # which takes ten times as long to load as a small model to integrate
+    if masked is not None and isinstance(values, masked.MaskedArray):
+        if masked.is_masked(values):
             raise Error(f"{what} has masked values{at(users_line())}: every value is needed, so fill them, as by "
                         ".filled(0.0), or leave out their instances")
 

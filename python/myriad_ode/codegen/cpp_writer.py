@@ -9,12 +9,11 @@ from typing import TYPE_CHECKING
 
 from .._core import factor_entries
 from ..models.mass_matrix import left_sides, mass_entries
-from ..symbolic.derivatives import dependencies, derivatives
-from ..symbolic.expression import as_number
-from ..symbolic.node import integer, real, symbols_of, text, walk
+from ..symbolic.node import integer, real, text, walk
 from ..symbolic.operations import cost
 from ..symbolic.whole_and_real import generic_problem
 from .cpp_body import Body, Names, branches, columns, returned, update, wrap
+from .jacobian import is_autonomous, jacobian_of
 
 if TYPE_CHECKING:
     from ..models.event import Event, Stop
@@ -23,11 +22,6 @@ if TYPE_CHECKING:
     from ..symbolic.node import Node
     from ..symbolic.types import Assignments
 
-# Stiff methods keep dense factors of fewer states in registers, and have no other ones for more states.
-_sparse_states = range(7, 129)
-# Beyond, the pattern alone is written, and the derivatives come from dual numbers. A network of 75 species with 1542
-# derivatives takes 3.3 ms with them, and 9.4 ms without (a run by rodas_5p, AVX-512).
-_most_derivatives = 2048
 
 _headers = {"time": "t", "step": "h", "next_step": "h_next", "phase": "phase", "instance": "index",
             "t_begin": "t_begin", "t_end": "t_end"}
@@ -106,29 +100,15 @@ class Writer:
         """What stiff methods need of a large model: the pattern of its Jacobian, whether it depends on time, as lines,
         and the derivatives, in a list of one function or none."""
         model = self.model
-        if len(model.states) not in _sparse_states:
-            return [], []
-        states = [s for s in symbols_of(model.rhs) if s.value[0] == "state"]
-        by_name = {s.value[1]: s for s in states}
-        order = [by_name[name] for name in model.states if name in by_name]
-        column = {i: model.states.index(s.value[1]) for i, s in enumerate(order)}
-        most = max(len(model.states) ** 2 // 2, _most_derivatives)
-        depends_on = dependencies(model.rhs, order)
-        if sum(map(len, depends_on)) > most:  # told before all derivatives are made, which takes seconds
-            return [], []
-        found = derivatives(model.rhs, order)
-        rows = found if found is not None else depends_on
-        entries = [(row, i) for row, columns in enumerate(rows) for i in sorted(columns)]
+        entries, values = jacobian_of(model)
         if not entries:
             return [], []
-        lines = [f"// {self.matrix([(row, column[i]) for row, i in entries])}"]
-        if all(s.value != ("built-in", "time") for s in symbols_of(model.rhs)):
+        lines = [f"// {self.matrix(entries)}"]
+        if is_autonomous(model):
             lines.append("static constexpr bool autonomous = true;")
-        written = ", ".join(f"{{{model.states[row]}, {model.states[column[i]]}}}" for row, i in entries)
+        written = ", ".join(f"{{{model.states[row]}, {model.states[column]}}}" for row, column in entries)
         lines += wrap(f"static constexpr myriad::jacobian_entry jacobian_pattern[] = {{{written}}};", 0)
-        if found is None or len(entries) > _most_derivatives:
-            return lines, []
-        return lines, [self.function("jacobian", len(entries), [as_number(found[row][i]) for row, i in entries])]
+        return lines, [self.function("jacobian", len(entries), values)] if values else []
 
     def matrix(self, entries: Sequence[tuple[int, int]]) -> str:
         """What stiff methods make of the entries of the Jacobian."""

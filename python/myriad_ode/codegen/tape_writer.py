@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 methods = tuple(_core.interpreted_methods())
 _codes = {name: number for number, name in enumerate(_core.tape_operations())}
-_sizes = _core.tape_sizes  # of the interpreters, from the smallest: the most components of each kind
+_limits: dict[str, int] = _core.tape_limits  # the most events, stops and triggers
 
 
 def _refuse(why: str) -> Error:
@@ -40,13 +40,14 @@ def _plural(kind: str) -> str:
     return kinds.every[kind].plural.replace("_", " ") if kind in kinds.every else f"{kind}s"
 
 
-def _size_for(components: Components) -> str:
-    """The smallest interpreter that has all components of a model."""
-    for size, limits in _sizes.items():
-        if all(components.counts[kind] <= most for kind, most in limits.items()):
-            return size
-    kind, most = next((k, m) for k, m in limits.items() if components.counts[k] > m)
-    raise _refuse(f"it has {components.counts[kind]} {_plural(kind)}, and the interpreter {most} at the most")
+def lengths_of(components: Components) -> list[int]:
+    """How many components of each kind a tape has. Raises `Error` if there are too many for the interpreter."""
+    counts = components.counts
+    for kind, most in _limits.items():
+        if counts[kind] > most:
+            raise _refuse(f"it has {counts[kind]} {_plural(kind)}, and the interpreter {most} at the most")
+    every = ("state", "parameter", "accessory", "integer_accessory", "event", "stop", "trigger")
+    return [counts[kind] for kind in every]
 
 
 class Writer:
@@ -116,7 +117,16 @@ class Writer:
         begin = len(self.codes)
         order = walk(roots)
         uses = collections.Counter(id(one) for one in (*(a for node in order for a in node.args), *roots))
-        free = list(range(_core.tape_registers))[::-1]
+        # Results of functions are stored as soon as they are there, as nothing reads them.
+        results: dict[int, list[tuple[str, int]]] = collections.defaultdict(list)
+        later = []
+        for root, store in zip(roots, stores):
+            if store[0] == "store_result":
+                results[id(root)].append(store)
+            else:
+                later.append((root, store))
+        free: list[int] = []
+        most = 0
         register: dict[int, int] = {}
         for node in order:
             arguments = [register[id(a)] for a in node.args]
@@ -126,14 +136,26 @@ class Writer:
                 if uses[argument] == 0:
                     free.append(register[argument])
             # products read their arguments after they have stored something
-            unread = free if node.op != "dot" else [r for r in free if r not in arguments]
-            if len(unread) < (2 if node.op == "dot" else 1):
+            kept = set(arguments) if node.op == "dot" else ()
+            chosen = []
+            for _ in range(2 if node.op == "dot" else 1):
+                place = next((i for i in range(len(free) - 1, -1, -1) if free[i] not in kept), None)
+                if place is None:
+                    chosen.append(most)
+                    most += 1
+                else:
+                    chosen.append(free.pop(place))
+            if most > _core.tape_registers:
                 raise _refuse("one of its functions needs more intermediate values than the interpreter has")
-            to = register[id(node)] = unread[-1]
-            term = unread[-2] if node.op == "dot" else to
-            free.remove(to)
-            self._operation(node, arguments, to, term)
-        for root, (code, number) in zip(roots, stores):
+            to = register[id(node)] = chosen[0]
+            free += chosen[1:]
+            self._operation(node, arguments, to, chosen[-1])
+            for code, number in results[id(node)]:
+                self._emit(code, to, number)
+                uses[id(node)] -= 1
+            if uses[id(node)] == 0:
+                free.append(to)
+        for root, (code, number) in later:
             self._emit(code, register[id(root)], number)
         self.functions[-1].append((begin, len(self.codes)))
 

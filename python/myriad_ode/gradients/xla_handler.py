@@ -155,7 +155,7 @@ def register(platform: str) -> None:
     header = pathlib.Path(jax.ffi.include_dir(), "xla", "ffi", "api", "c_api.h").read_text()
     source = header + _handler
     # its headers are not prepared
-    library = compiled_files.functions(by, source, lambda folder: by.compile(source, folder))
+    library = compiled_files.functions(by, source, lambda folder: by.compile(source, folder, compiler.most_seconds()))
     library.myriad_set_solver(_solve)
     jax.ffi.register_ffi_target(_target, jax.ffi.pycapsule(library.myriad_solve), platform=platform)
     _registered[platform] = library

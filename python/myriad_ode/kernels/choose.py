@@ -42,5 +42,5 @@ def choose_kernel(model: AnyModel, components: Components, method: str, control:
         if precision != "double" or control:
             raise Error(f"a model is interpreted, {why}, in double precision and with the usual control alone: leave "
                         "out precision= and control=, or install a C++ compiler")
-        return interpreter.kernel(model, components, method, why), interpreter.padded(components)
-    return compiler.kernel(*model.source(), written, precision), components.names
+        return interpreter.kernel(model, components, method, why), components.names
+    return compiler.kernel(*model.source(), written, precision, model.name), components.names

@@ -3,6 +3,7 @@
 
 import contextlib
 import importlib.util
+import math
 import os
 import pathlib
 import threading
@@ -12,7 +13,9 @@ from typing import Any
 
 from .. import _core
 from ..base.errors import Error
+from ..models.methods import stages_of
 from . import compiled_files
+from .told import seconds_to_compile, told
 
 _include = pathlib.Path(__file__).parents[1] / "include"
 
@@ -54,10 +57,23 @@ def source_of(header: str, struct: str, method: str, real: str) -> str:
 _begun: set[str] = set()
 
 
+def most_seconds() -> float:
+    """How long a compiler may take before it counts as hanging: $MYRIAD_COMPILE_SECONDS, or a quarter of an hour."""
+    given = os.environ.get("MYRIAD_COMPILE_SECONDS") or "900"
+    try:
+        seconds = float(given)
+    except ValueError:
+        seconds = math.nan
+    if not seconds > 0:
+        raise Error(f"MYRIAD_COMPILE_SECONDS is {given!r}, and not a number of seconds above zero: set it to one, or "
+                    "unset it")
+    return seconds
+
+
 def _compile(by: _core.Compiler, source: str, folder: str) -> None:
     """Compiles, and then has the compiler prepare the library's headers beside the program's own work, if they are not.
     A program that ends earlier waits for that, a few seconds at most."""
-    if not by.compile(source, folder) and by.identity not in _begun:
+    if not by.compile(source, folder, most_seconds()) and by.identity not in _begun:
         _begun.add(by.identity)
         threading.Thread(target=_prepare, args=(by,)).start()
 
@@ -93,9 +109,10 @@ def kernel_of(obtained: compiled_files.Obtained, by: str, begin: float) -> Kerne
 _loaded: dict[Any, _core.Library] = {}
 
 
-def kernel(header: str, struct: str, method: str, real: str) -> Kernel:
+def kernel(header: str, struct: str, method: str, real: str, name: str = "") -> Kernel:
     """The kernel of a model, which is C++ source with a struct of that name, for a method and a real type, both as C++
-    types. Raises `Error` if there is no compiler, or with its first message if it refuses the model."""
+    types; `name`: of the model, for what users are told. Raises `Error` if there is no compiler, or with its first
+    message if it refuses the model."""
     begin = time.perf_counter()
     asked = (header, struct, method, real,
              *map(os.environ.get, ("MYRIAD_INSTRUCTION_SET", "MYRIAD_CXX", "CXX")))
@@ -104,7 +121,8 @@ def kernel(header: str, struct: str, method: str, real: str) -> Kernel:
     by = compiler()
     source = source_of(header, struct, method, real)
     made_from = by.made_from(source)
-    obtained = compiled_files.obtain(made_from, lambda folder: _compile(by, source, folder),
-                            lambda path: _load(by, path, made_from))
+    with told(name or struct, seconds_to_compile(header, stages_of(method))):
+        obtained = compiled_files.obtain(made_from, lambda folder: _compile(by, source, folder),
+                                         lambda path: _load(by, path, made_from))
     _loaded[asked] = obtained.loaded
     return kernel_of(obtained, by.kind, begin)

@@ -5,13 +5,15 @@ from __future__ import annotations
 
 import math
 import weakref
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from .. import _core
 from ..base import component_kinds as kinds
 from ..base.errors import Error
-from ..codegen.tape_writer import Writer, _refuse, _size_for, _sizes, methods
+from ..codegen.jacobian import first_sparse, is_autonomous, jacobian_of, pattern_of
+from ..codegen.tape_writer import Writer, _refuse, lengths_of, methods
+from ..models.methods import stiff
 from ..models.recorded import RecordedModel
 from ..symbolic import symbols as sym
 from ..symbolic.expression import constant
@@ -37,7 +39,7 @@ def library(model: AnyModel, components: Components, method: str) -> _core.Libra
         raise _refuse("it has a mass matrix")
     if model.summaries:
         raise _refuse("it has extrema or integrals over a phase")
-    size = _size_for(components)
+    lengths = lengths_of(components)
     if model.queue is not None and model.queue.values > _core.tape_values:
         raise _refuse(f"its actions that wait have {model.queue.values} values, and the interpreter "
                       f"{_core.tape_values} at the most")
@@ -49,12 +51,14 @@ def library(model: AnyModel, components: Components, method: str) -> _core.Libra
     writer.hook(model.after_step, "after_step")
     writer.hook(model.finalise, "finalise")
     writer.hook(model.generate, "generate")
+    entries, values = _matrix(model) if method in stiff else ([], None)
+    writer.function(values or [], [("store_result", e) for e in range(len(values or []))])
     _write_actions(writer, model)
     actions = [one.do for one in (*model.events, *model.stops, *model.triggers)]
     may_stop = any(t.value[0] == "action" for a in (model.after_step, *actions) for t, _ in a)
-    made = _tape(writer, model)
+    made = _tape(writer, model, lengths, entries)
     shared, shared_integers = (len(components.names[kind]) for kind in kinds.shared)
-    return _core.Library(method, size, shared, shared_integers, may_stop, made)
+    return _core.Library(method, shared, shared_integers, may_stop, made)
 
 
 def _write_actions(writer: Writer, model: RecordedModel) -> None:
@@ -91,13 +95,22 @@ def _time_of(one: Stop) -> Node:
     return time
 
 
-def _tape(writer: Writer, model: RecordedModel) -> _core.Tape:
+def _matrix(model: RecordedModel) -> tuple[list[tuple[int, int]], Sequence[Node] | None]:
+    """The entries of the Jacobian, where it is not dense, and their values, if a tape is to compute them."""
+    if len(model.states) < first_sparse:
+        return [], None
+    entries, values = jacobian_of(model)
+    return entries or pattern_of(model), values
+
+
+def _tape(writer: Writer, model: RecordedModel, lengths: list[int], entries: list[tuple[int, int]]) -> _core.Tape:
     """The tape of the functions of a model."""
     place = writer.place
     queue, edges = model.queue, model.edges
     where_waiting = [0, 0, 0, 0] if queue is None else [
         place[queue.accessories[0]][1], place[queue.integers[0]][1], queue.capacity, queue.values]
-    return _core.Tape(writer.functions, writer.codes, writer.values, writer.registers,
+    return _core.Tape(writer.functions, writer.codes, writer.values, writer.registers, lengths, entries,
+                      is_autonomous(model),
                       [i for i, e in enumerate(edges) if not e.initial_value],
                       [i for i, e in enumerate(edges) if not e.persistent], where_waiting,
                       *((-1, -1) if queue is None else (len(model.stops), queue.seed)))
@@ -110,16 +123,17 @@ def give_model(library: _core.Library, model: AnyModel, components: Components, 
         return
     writer = Writer(components)
     try:
+        lengths = lengths_of(components)
         for roots in (model.rhs, [] if model.initialise else [e.function for e in model.events]):
             writer.function(roots, [("store_result", c) for c in range(len(roots))])
     except Error:
         return
-    for _ in range(4):  # no hooks
+    for _ in range(5):  # no hooks
         writer.function([], [])
     for _ in range(7):
         writer.series([])
     mass = [] if model.mass_matrix is None or model.initialise else model.mass_matrix.ravel().tolist()
-    library.give_model(_tape(writer, model), method, mass)
+    library.give_model(_tape(writer, model, lengths, []), method, mass)
 
 
 _known: weakref.WeakKeyDictionary[Any, Any] = weakref.WeakKeyDictionary()
@@ -131,9 +145,3 @@ def kernel(model: AnyModel, components: Components, method: str, why: str) -> Ke
     if method not in of_model:
         of_model[method] = library(model, components, method)
     return Kernel(of_model[method], f"interpreted, {why}", 0.0)
-
-
-def padded(components: Components) -> dict[str, list[str]]:
-    """The names of all components that the interpreter has: those of the model, and empty ones for the others."""
-    limits = _sizes[_size_for(components)]
-    return {kind: names + [""] * (limits.get(kind, 0) - len(names)) for kind, names in components.names.items()}

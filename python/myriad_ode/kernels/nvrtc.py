@@ -17,8 +17,10 @@ from typing import Any
 
 from .. import _core
 from ..base.errors import Error
+from ..models.methods import stages_of
 from . import compiled_files
 from .compiler import Kernel, kernel_of
+from .told import seconds_to_compile, told
 
 _oldest = 12, 6  # older ones crash
 _include = pathlib.Path(__file__).parents[1] / "include"
@@ -221,7 +223,8 @@ def kernel(header: str, struct: str, method: str, real: str, shared: tuple[int, 
     asked = (source, capability, os.environ.get("MYRIAD_NVRTC"))
     if asked in _loaded:
         return Kernel(_loaded[asked], "memory", time.perf_counter() - begin)
-    obtained = _cached(source, capability, lambda program: _core.Library(program, device))
+    with told(struct, seconds_to_compile(header, stages_of(method))):
+        obtained = _cached(source, capability, lambda program: _core.Library(program, device))
     if use is not None:
         use(obtained.loaded)
     _loaded[asked] = obtained.loaded

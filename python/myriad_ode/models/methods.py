@@ -18,6 +18,15 @@ controls: tuple[str, ...] = get_args(Control)  #: the names of choices of step-s
 fixed_step = ("runge_kutta_4",)
 stiff = ("rosenbrock_23", "rodas_5p")  #: those that solve linear systems
 
+_stages = {"runge_kutta_4": 4, "cash_karp": 6, "verner_7": 10, "dormand_prince_8": 12, "verner_9": 16,
+           "rosenbrock_23": 3, "rodas_5p": 8}
+
+
+def stages_of(written: str) -> int:
+    """The stages of the method in a C++ type."""
+    return next((count for name, count in _stages.items() if name in written), 7)
+
+
 default = "tsitouras_5"  # docs/methods.md#the-default
 
 # What other packages call methods that are here, or whose place one takes.

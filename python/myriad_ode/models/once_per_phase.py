@@ -11,7 +11,6 @@ from __future__ import annotations
 import copy
 from typing import TYPE_CHECKING, Any
 
-from .. import _core
 from ..symbolic import expression as ex, symbols as sym
 from ..symbolic.operations import cost
 from ..symbolic.functions import draws
@@ -93,13 +92,19 @@ class _Parts:
         return replaced(roots, self._accessories)
 
 
+# The most accessories of small models, of larger ones, and of those with stops or triggers: each is memory of every
+# instance, which a step of a small model hardly needs otherwise.
+most_accessories = (6, 128, 512)
+_small = {"state": 8, "parameter": 16, "accessory": 6, "integer_accessory": 3, "event": 3}
+
+
 def _room(model: RecordedModel) -> int:
-    """How many accessories a model may have more, and still be interpreted as fast as without them."""
+    """How many accessories a model may have more."""
     counts = counts_of(model)
-    for limits in _core.tape_sizes.values():
-        if all(counts[kind] <= most for kind, most in limits.items()):
-            return limits["accessory"] - counts["accessory"]
-    return limits["accessory"]
+    few, many, most = most_accessories
+    if counts["stop"] or counts["trigger"] or max(counts[kind] for kind in _small) > many:
+        return max(0, most - counts["accessory"])
+    return (few if all(counts[kind] <= limit for kind, limit in _small.items()) else many) - counts["accessory"]
 
 
 def _prepared(model: RecordedModel) -> RecordedModel:

@@ -45,7 +45,7 @@ constexpr int default_batches() {
 #if defined(MYRIAD_ONE_BATCH)  // tests of lanes beside each other: in three quarters of the time
     constexpr bool one_batch = true;
 #else
-    constexpr int states = n_state<Model>;
+    constexpr auto states = n_state<Model>;
     constexpr bool one_batch = states > 16 || (has_events<Model> && !rare_events<Model>);
 #endif
     if constexpr (one_by_one) {
@@ -60,7 +60,9 @@ constexpr int default_batches() {
 #else
         constexpr bool two_fit = pack<double, 1>::lanes == 8;  // AVX-512
 #endif
-        constexpr bool small = n_state<Model> <= 4 && n_state<Model> + n_parameter<Model> <= 8 && Method::stages <= 7;
+        constexpr bool small = n_state<Model> <= 4 &&
+                               MYRIAD_CAPACITY(n_state<Model>) + MYRIAD_CAPACITY(n_parameter<Model>) <= 8 &&
+                               Method::stages <= 7;
         return two_fit || !small ? 2 : 3;
     }
 #endif
@@ -85,7 +87,8 @@ struct lane_kind<R, 0> {
 template <class Model, class Method, class S>
 constexpr std::size_t stack_of_kernel() {
     constexpr std::size_t state = sizeof(vec<S, n_state<Model>>), few = 4096;
-    constexpr std::size_t matrix = solves_linear_systems<Method> ? n_state<Model> * state : 0;
+    constexpr std::size_t matrix =
+        solves_linear_systems<Method> ? sizeof(vec<vec<S, n_state<Model>>, n_state<Model>>) : 0;
     return 2 * (sizeof(integrator<Model, Method, S>) + sizeof(trial_step<Method, S, n_state<Model>>)) + matrix +
            16 * state + few;
 }
@@ -140,14 +143,18 @@ struct team_run {
 template <class Model, class R>
 kernel_arguments<Model, R> arguments_of(const any_arguments<R>& from) {
     using arrays = argument_arrays<Model, R>;
-    constexpr argument_offsets<R> at(numbers_of<Model>);
-#define MYRIAD_CHECK_PLACE(type, name, count) static_assert(offsetof(arrays, name) == at.name);
-    MYRIAD_ARGUMENT_ARRAYS(MYRIAD_CHECK_PLACE)
-#undef MYRIAD_CHECK_PLACE
-    static_assert(sizeof(arrays) == at.end);
     kernel_arguments<Model, R> all;
     static_cast<argument_head<R>&>(all) = from;
-    std::memcpy(static_cast<arrays*>(&all), from.arrays, sizeof(arrays));
+    if constexpr (requires(arrays a) { a.point_to(from); }) {  // the numbers of components are known only now
+        all.point_to(from);
+    } else {
+        constexpr argument_offsets<R> at(numbers_of<Model>);
+#define MYRIAD_CHECK_PLACE(type, name, count) static_assert(offsetof(arrays, name) == at.name);
+        MYRIAD_ARGUMENT_ARRAYS(MYRIAD_CHECK_PLACE)
+#undef MYRIAD_CHECK_PLACE
+        static_assert(sizeof(arrays) == at.end);
+        std::memcpy(static_cast<arrays*>(&all), from.arrays, sizeof(arrays));
+    }
     return all;
 }
 

@@ -2,11 +2,11 @@
 // Calls every function of a model for one instance. Host code, for studies.
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <type_traits>
+#include <vector>
 
 #include "myriad/host/checks/instance_inputs.hpp"
 #include "myriad/host/checks/shown_values.hpp"
@@ -28,8 +28,8 @@ public:
               void (*take)(void* to, const shown_value&))
         : place_(place), to_(to), take_(take) {
         static_cast<inputs<Model, R>&>(data_) = detail::inputs_of<Model>(a, i);
-        for (int c = 0; c < n_accessory<Model>; ++c) data_.accessory[c] = a.accessory[c * a.size + i];
-        for (int c = 0; c < n_integer_accessory<Model>; ++c)
+        for (int c = 0; c < MYRIAD_LENGTH(n_accessory<Model>); ++c) data_.accessory[c] = a.accessory[c * a.size + i];
+        for (int c = 0; c < MYRIAD_LENGTH(n_integer_accessory<Model>); ++c)
             data_.integer_accessory[c] = a.integer_accessory[c * a.size + i];
         data_.y = detail::state_of<Model>(a, i);
         data_.t_begin = detail::begin_of(a, i);
@@ -39,11 +39,11 @@ public:
         data_.h = R(0);
         const R length = data_.t_end - data_.t_begin;
         data_.h_next = std::isfinite(length) ? length / R(1024) : R(1) / R(1024);
-        for (int j = 0; j < n_event<Model>; ++j) data_.event_count[j] = 0;
+        for (int j = 0; j < MYRIAD_LENGTH(n_event<Model>); ++j) data_.event_count[j] = 0;
         int salt = 0;
-        for (int c = 0; c < n_state<Model>; ++c) prepare(data_.y[c], ++salt);
-        for (int c = 0; c < n_parameter<Model>; ++c) prepare(data_.parameter[c], ++salt);
-        for (int c = 0; c < n_accessory<Model>; ++c) prepare(data_.accessory[c], ++salt);
+        for (int c = 0; c < MYRIAD_LENGTH(n_state<Model>); ++c) prepare(data_.y[c], ++salt);
+        for (int c = 0; c < MYRIAD_LENGTH(n_parameter<Model>); ++c) prepare(data_.parameter[c], ++salt);
+        for (int c = 0; c < MYRIAD_LENGTH(n_accessory<Model>); ++c) prepare(data_.accessory[c], ++salt);
         data_.t = data_.t_begin;
     }
 
@@ -52,8 +52,8 @@ public:
             for (int c = 0; c < count; ++c) take(function, 0, kind, c, values[c]);
         };
         if (place_.at == 0) {
-            take_all(model_function::start, data_.y, n_state<Model>, shown_kind::state);
-            take_all(model_function::start, data_.parameter, n_parameter<Model>, shown_kind::parameter);
+            take_all(model_function::start, data_.y, MYRIAD_LENGTH(n_state<Model>), shown_kind::state);
+            take_all(model_function::start, data_.parameter, MYRIAD_LENGTH(n_parameter<Model>), shown_kind::parameter);
         }
         if constexpr (has_initialise<Model>)
             act(
@@ -61,9 +61,10 @@ public:
         if (place_.at > 0) move();
         const inputs<Model, R>& p = data_;
         const R t = data_.t;
-        take_all(model_function::rhs, Model::template rhs<R>(t, data_.y, p), n_state<Model>, shown_kind::state);
+        take_all(model_function::rhs, Model::template rhs<R>(t, data_.y, p), MYRIAD_LENGTH(n_state<Model>),
+                 shown_kind::state);
         if constexpr (has_events<Model>)
-            take_all(model_function::events, Model::template events<R>(t, data_.y, p), n_event<Model>,
+            take_all(model_function::events, Model::template events<R>(t, data_.y, p), MYRIAD_LENGTH(n_event<Model>),
                      shown_kind::result);
         if constexpr (has_observe<Model>)
             take_all(model_function::observe, Model::template observe<R>(t, data_.y, p), n_observed<Model>,
@@ -74,7 +75,7 @@ public:
                  (what.quantity * 8 + static_cast<int>(what.kind)) * 4096 + what.accessory);
         });
         if constexpr (has_stops<Model>) {
-            for (int j = 0; j < n_stop<Model>; ++j)
+            for (int j = 0; j < MYRIAD_LENGTH(n_stop<Model>); ++j)
                 take(model_function::stop_time, j, shown_kind::result, place_.at,
                      Model::template stop_time<R>(j, place_.at, p));
         }
@@ -91,12 +92,12 @@ public:
             change(model_function::after_step, 0, [](auto& lane) { return Model::after_step(lane); });
         }
         if constexpr (has_after_event<Model>) {
-            for (int j = 0; j < n_event<Model>; ++j)
+            for (int j = 0; j < MYRIAD_LENGTH(n_event<Model>); ++j)
                 change(model_function::after_event, j, [j](auto& lane) { return Model::after_event(j, lane); });
         }
         show_stops(data_);
         if constexpr (has_triggers<Model>) {
-            for (int j = 0; j < n_trigger<Model>; ++j)
+            for (int j = 0; j < MYRIAD_LENGTH(n_trigger<Model>); ++j)
                 change(model_function::after_trigger, j, [j](auto& lane) { return Model::after_trigger(j, lane); });
         }
         if constexpr (has_finalise<Model>)
@@ -116,7 +117,7 @@ private:
     void move() {
         const R length = data_.t_end - data_.t_begin;
         data_.t += static_cast<R>(detail::scattered(place_.at, 0)) * (std::isfinite(length) ? length : R(1));
-        for (int c = 0; c < n_state<Model>; ++c) {
+        for (int c = 0; c < MYRIAD_LENGTH(n_state<Model>); ++c) {
             const auto by = static_cast<R>(detail::scattered(place_.at, c + 1));
             data_.y[c] += data_.y[c] == R(0) ? by / R(64) : data_.y[c] * (by - R(0.5)) / R(8);
         }
@@ -141,11 +142,11 @@ private:
         const auto changed = [&](shown_kind kind, const auto& from, const auto& to, int count) {
             for (int c = 0; c < count; ++c) take_changed(function, number, kind, c, from[c], to[c]);
         };
-        changed(shown_kind::state, before.y, data.y, n_state<Model>);
-        changed(shown_kind::accessory, before.accessory, data.accessory, n_accessory<Model>);
+        changed(shown_kind::state, before.y, data.y, MYRIAD_LENGTH(n_state<Model>));
+        changed(shown_kind::accessory, before.accessory, data.accessory, MYRIAD_LENGTH(n_accessory<Model>));
         if constexpr (writes_parameters<Model>)
-            changed(shown_kind::parameter, before.parameter, data.parameter, n_parameter<Model>);
-        for (int c = 0; c < n_integer_accessory<Model>; ++c)
+            changed(shown_kind::parameter, before.parameter, data.parameter, MYRIAD_LENGTH(n_parameter<Model>));
+        for (int c = 0; c < MYRIAD_LENGTH(n_integer_accessory<Model>); ++c)
             if (before.integer_accessory[c] != data.integer_accessory[c])
                 take(function, number, shown_kind::integer_accessory, c, data.integer_accessory[c]);
         if constexpr (writes_time_domain<Model>) {
@@ -167,11 +168,11 @@ private:
     /// nothing to take from a queue. Once for each stop.
     void show_stops(const lane_data<Model, R>& from) {
         if constexpr (has_after_stop<Model>) {
-            for (int j = 0; j < n_stop<Model>; ++j) {
+            for (int j = 0; j < MYRIAD_LENGTH(n_stop<Model>); ++j) {
                 const inputs<Model, R>& p = from;
                 const R time = Model::template stop_time<R>(j, place_.at, p);
-                if (stop_is_shown_[j] || !std::isfinite(time)) continue;
-                stop_is_shown_[j] = true;
+                if (stop_is_shown_[static_cast<std::size_t>(j)] || !std::isfinite(time)) continue;
+                stop_is_shown_[static_cast<std::size_t>(j)] = true;
                 lane_data<Model, R> data = from;
                 data.t = time;
                 act(
@@ -184,9 +185,9 @@ private:
     /// The conditions for some of the signs that their event functions may have.
     void show_conditions() const {
         mask_set<bool, n_event<Model>> positive;
-        for (int j = 0; j < n_event<Model>; ++j)
+        for (int j = 0; j < MYRIAD_LENGTH(n_event<Model>); ++j)
             positive.set(j, detail::scattered(place_.at, j) < (place_.at % 3 + 1) * 0.25);
-        for (int k = 0; k < n_trigger<Model>; ++k)
+        for (int k = 0; k < MYRIAD_LENGTH(n_trigger<Model>); ++k)
             take(model_function::condition, k, shown_kind::result, 0,
                  Model::condition(k, event_signs<n_event<Model>>(positive)) ? 1 : 0);
     }
@@ -195,7 +196,7 @@ private:
     void* to_;
     void (*take_)(void* to, const shown_value&);
     lane_data<Model, R> data_{};
-    std::array<bool, n_stop<Model> + 1> stop_is_shown_{};
+    std::vector<bool> stop_is_shown_ = std::vector<bool>(static_cast<std::size_t>(MYRIAD_LENGTH(n_stop<Model>)));
 };
 
 /// See `behaviour_function`.

@@ -14,7 +14,7 @@ template <class Model, class R>
 inputs<Model, R> inputs_of(const argument_head<R>& a, std::int64_t i) {
     inputs<Model, R> p;
 #define MYRIAD_READ_KIND(kind, ...) \
-    for (int c = 0; c < n_##kind<Model>; ++c) p.kind[c] = a.kind[c * a.size + i];
+    for (int c = 0; c < MYRIAD_LENGTH(n_##kind<Model>); ++c) p.kind[c] = a.kind[c * a.size + i];
     MYRIAD_PARAMETER_KINDS(MYRIAD_READ_KIND)
     if constexpr (!accessories_are_outputs<Model>) {
         MYRIAD_ACCESSORY_KINDS(MYRIAD_READ_KIND)
@@ -28,7 +28,7 @@ inputs<Model, R> inputs_of(const argument_head<R>& a, std::int64_t i) {
 template <class Model, class R>
 vec<R, n_state<Model>> state_of(const argument_head<R>& a, std::int64_t i) {
     vec<R, n_state<Model>> y;
-    for (int c = 0; c < n_state<Model>; ++c) y[c] = a.state[c * a.size + i];
+    for (int c = 0; c < MYRIAD_LENGTH(n_state<Model>); ++c) y[c] = a.state[c * a.size + i];
     return y;
 }
 template <class R>

@@ -28,7 +28,7 @@ inline constexpr auto dense_mass_matrix = [] {
 /// See `instance_functions`.
 template <class Model, class R>
 void linearise(const argument_head<R>& a, std::int64_t i, R t, const R* y, R* slopes, R* jacobian) {
-    constexpr int n = n_state<Model>;
+    constexpr auto n = n_state<Model>;
     vec<R, n> state;
     for (int c = 0; c < n; ++c) state[c] = y[c];
     const auto p = detail::inputs_of<Model>(a, i);

@@ -20,7 +20,7 @@ template <class Model, class Method, class S>
 struct adaptive_stepping {
     using R = real_of<S>;
     using mask = mask_of<S>;
-    static constexpr int n = n_state<Model>;
+    static constexpr auto n = n_state<Model>;
     static constexpr bool keeps_low = keeps_time_low<Model, Method, R>;
     static constexpr std::int32_t stagnation_interval = 1024;
     using C = control_of<S>;  // less precise in CUDA threads
@@ -67,7 +67,7 @@ struct adaptive_stepping {
         if constexpr (keeps_low) remaining = remaining - s.steps.time_low;
         s.final_step = (abs(remaining) <= abs(s.data.h_next) * S(R(1 + 1.0 / 1024))) & !locating;
         S h = copysign(s.data.h_next, remaining);
-        if constexpr (!keeps_low) h = (s.data.t + h) - s.data.t;
+        if (!keeps_low_now()) h = (s.data.t + h) - s.data.t;
         s.h = select(s.final_step, remaining, h);
     }
 
@@ -100,7 +100,7 @@ struct adaptive_stepping {
             factor = select(within | finite, factor, C(static_cast<L>(args.shrink_limit)));
             // At a few roundings of t, nine tenths of the step may round to the same step.
             const S rounding = S(epsilon_of<R>) * abs(s.data.t);
-            if constexpr (!keeps_low)
+            if (!keeps_low_now())
                 factor = select(rejected & (abs(s.h) <= S(R(16)) * rounding), smaller(factor, C(L(safety_factor / 2))),
                                 factor);
             // A step of length zero does not show why the previous one failed.
@@ -138,7 +138,7 @@ struct adaptive_stepping {
     }
 
     MYRIAD_FUNCTION mask advance(const mask& accepted, const S& t1, const mask&) {
-        if constexpr (keeps_low)
+        if (keeps_low_now())
             s.steps.time_low = select(accepted, (s.h + s.steps.time_low) - (t1 - s.data.t), s.steps.time_low);
         s.data.t = select(accepted, t1, s.data.t);
         // The last step ends there; an earlier one may, by rounding or at an event.
@@ -162,6 +162,10 @@ struct adaptive_stepping {
     }
 
 private:
+    /// `keeps_low`, and known only at run time where the number of events is.
+    static MYRIAD_FUNCTION bool keeps_low_now() {
+        return keeps_low && (std::is_same_v<R, float> || !has_events<Model> || MYRIAD_LENGTH(n_event<Model>) > 0);
+    }
     /// The ratio of the next step to the last one, from `worst`, the ratio of error to tolerance.
     MYRIAD_FUNCTION C factor_of_step(const C& worst, const mask& within, const mask& accepted) {
         constexpr int order = estimate_order<Method>;

@@ -26,7 +26,7 @@ struct fixed_stepping {
     using R = real_of<S>;
     using mask = mask_of<S>;
     using count = count_of<S>;
-    static constexpr int n = n_state<Model>;
+    static constexpr auto n = n_state<Model>;
     static constexpr bool keeps_low = keeps_time_low<Model, Method, R>;
     static constexpr std::int32_t stagnation_interval = 0;
 

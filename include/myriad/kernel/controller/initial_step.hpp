@@ -54,9 +54,10 @@ MYRIAD_FUNCTION S step_by_curvature(const kernel_arguments<Model, real_of<S>>& a
                                     integration_state<Model, Method, S>& s, const mask_of<S>& open,
                                     const vec<S, n_state<Model>>& slope0) {
     using R = real_of<S>;
-    constexpr int n = n_state<Model>, controlled = n_controlled<Model>;
+    constexpr auto n = n_state<Model>, controlled = n_controlled<Model>;
     const S direction = copysign(S(R(1)), s.data.t_end - s.data.t);
-    S scale[controlled], d0 = S(R(0)), d1 = S(R(0)), d2 = S(R(0));
+    vec<S, controlled> scale;
+    S d0 = S(R(0)), d1 = S(R(0)), d2 = S(R(0));
     detail::each_component<Method, controlled>([&](int c) MYRIAD_LAMBDA {
         scale[c] =
             fma(S(detail::relative_tolerance_of(args, c)), abs(s.data.y[c]), S(detail::absolute_tolerance_of(args, c)));

@@ -71,7 +71,7 @@ MYRIAD_FUNCTION float larger_magnitude(const float& a, const float& b) { return 
 
 /// The largest of non-negative numbers, one for each of a thread's n states, of which the whole system has `all`; NaN
 /// if one of them is.
-template <class Method, int all, class S, int n>
+template <class Method, extent all, class S, extent n>
 MYRIAD_FUNCTION S largest_ratio(const vec<S, n>& a) {
     S largest = a[0], sum = a[0];
     // The only state of a thread of a team is changed as those of others are: the same bits for every size of team.
@@ -85,7 +85,7 @@ MYRIAD_FUNCTION S largest_ratio(const vec<S, n>& a) {
 }
 
 /// The values with which the errors of a trial are compared.
-template <class S, int n>
+template <class S, extent n>
 struct error_scale {
     vec<S, n> of;       // max(atol, rtol * max(|y|, |y1|)), or the chosen alternative
     mask_of<S> finite;  // no component of y1 is infinite; a NaN makes its ratio NaN
@@ -118,10 +118,10 @@ MYRIAD_FUNCTION error_scale<S, n_controlled<Model>> scale_of_errors(const kernel
 
 /// The largest |factor * sum(c)| / scale over the components of a thread, or the chosen norm of all; NaN if one of them
 /// is.
-template <class Model, class Method, class S, int n, class Sum>
+template <class Model, class Method, class S, extent n, class Sum>
 MYRIAD_FUNCTION control_of<S> error_over_tolerance(const vec<S, n>& scale, const S& factor, Sum&& sum) {
     using C = control_of<S>;
-    constexpr int all = n_controlled<whole_of<Model>>;  // components of the whole system
+    constexpr auto all = n_controlled<whole_of<Model>>;  // components of the whole system
     if constexpr (averages_errors<Method>) {
         using R = real_of<C>;
         C squares = C(R(0));
@@ -132,7 +132,7 @@ MYRIAD_FUNCTION control_of<S> error_over_tolerance(const vec<S, n>& scale, const
         } else {
             as_part<Model>::template in_order<S>(ratio, add);
         }
-        return sqrt(squares * C(R(1.0 / all)));
+        return sqrt(squares * C(R(1.0 / MYRIAD_LENGTH(all))));
     } else {
         vec<S, n> ratio;
         detail::each_component<Method, n>([&](int c) MYRIAD_LAMBDA { ratio[c] = error_ratio(sum(c), scale[c]); });

@@ -148,6 +148,21 @@ using namespace detail;
 }
 }  // namespace myriad
 
+// A number of components is an `extent`. Loops over them end at MYRIAD_LENGTH(n), arrays of them that are no `vec` have
+// MYRIAD_CAPACITY(n). All three are plain numbers, but for models whose numbers of components are known only when they
+// run. Who compiles such models, as the Python package its interpreter, defines the three before: extents are then
+// names that become numbers by these macros alone, and are compared only with constants. What forgets one does not
+// compile.
+#if !defined(MYRIAD_LENGTH)
+namespace myriad::detail {
+using extent = int;
+}
+#define MYRIAD_LENGTH(n) (n)
+#define MYRIAD_CAPACITY(n) (n)
+#endif
+/// More iterations than this of large bodies stay loops, which otherwise take minutes to compile.
+#define MYRIAD_MOST_COPIES 32
+
 #if defined(__GNUC__)
 #define MYRIAD_UNLIKELY(condition) __builtin_expect(static_cast<bool>(condition), 0)
 #else

@@ -19,10 +19,10 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 #endif
 
 /// Returns the index. The compiler refuses an index that optimisation shows to be out of range; others are not checked.
-template <int size>
+template <extent size>
 MYRIAD_FUNCTION int checked_index(int i) {
 #if !MYRIAD_FOR_GPU
-    if (__builtin_constant_p(i) && (i < 0 || i >= size)) no_such_component();
+    if (__builtin_constant_p(i) && (i < 0 || i >= MYRIAD_LENGTH(size))) no_such_component();
 #endif
     return i;
 }
@@ -65,10 +65,10 @@ struct vec_values<S, std::integer_sequence<int, c...>> {
 /// `size` values of kind `S` (a real number, a pack or a dual number): `return {a, b};`, with one value per component,
 /// or `{}` for zeros. Declared without braces, it is uninitialised. For a vector of one component write the type,
 /// `return myriad::vec<S, 1>{a};`, as nvcc has rejected the short form in templates.
-template <class S, int size>
-struct vec : vec_values<S, std::make_integer_sequence<int, size>> {
+template <class S, detail::extent size>
+struct vec : vec_values<S, std::make_integer_sequence<int, MYRIAD_LENGTH(size)>> {
     /// What holds the values.
-    using base = vec_values<S, std::make_integer_sequence<int, size>>;
+    using base = vec_values<S, std::make_integer_sequence<int, MYRIAD_LENGTH(size)>>;
     using base::base;
 
     /// Uninitialised, or `size` values; any other number of values does not compile.

@@ -11,7 +11,7 @@ template <class Model, class Method, class S>
 struct event_detector {
     using R = real_of<S>;
     using mask = mask_of<S>;
-    static constexpr int m = n_event<Model>;
+    static constexpr auto m = n_event<Model>;
     using values = vec<S, m>;  // of the event functions in all lanes
     using masks = mask_set<mask, m>;
     using detection = event_detection<S, m>;
@@ -25,7 +25,7 @@ struct event_detector {
         masks below;
         below.clear();
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) below.set_negative(j, g1[j]);
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) below.set_negative(j, g1[j]);
         // A function has crossed if it was above zero and is below, or was below and is above.
         detected.crossed = ~(e.above ^ below);
         detected.to_locate = e.flags[e.in_question] | (detected.crossed & (sides.asked() | ~e.left)).any_of();
@@ -34,7 +34,7 @@ struct event_detector {
             masks far;
             far.clear();
             MYRIAD_UNROLL
-            for (int j = 0; j < m; ++j) far.set(j, abs(g1[j]) > S(sides.args.event[j].end_tolerance));
+            for (int j = 0; j < MYRIAD_LENGTH(m); ++j) far.set(j, abs(g1[j]) > S(sides.args.event[j].end_tolerance));
             detected.to_locate = detected.to_locate | (sides.s.final_step & !far.all_of());
         }
         return detected;
@@ -46,7 +46,8 @@ struct event_detector {
         // A function whose event was just located, maybe past zero, changes its side after the event's action.
         if constexpr (!is_pack<S>) crossed = crossed & ~located;
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) crossed.set(j, crossed[j] & (detected.g1[j] != S(R(0))));  // zero is on either side
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j)
+            crossed.set(j, crossed[j] & (detected.g1[j] != S(R(0))));  // zero is on either side
         sides.e.above = sides.e.above ^ crossed;
     }
 };

@@ -20,11 +20,11 @@ struct located_crossing {
 };
 
 /// The earliest of the events in `crossed`, by the fractions `fraction_of(j)`; of equal ones the first by index.
-template <class R, int m, class Fraction>
+template <class R, extent m, class Fraction>
 MYRIAD_FUNCTION located_crossing<R> first_of(const mask_set<bool, m>& crossed, Fraction&& fraction_of) {
     located_crossing<R> first{R(2), 0};
     MYRIAD_UNROLL
-    for (int j = 0; j < m; ++j) {
+    for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
         if (!crossed[j]) continue;
         const R x = fraction_of(j);
         if (x < first.fraction) first = {x, j};
@@ -34,14 +34,18 @@ MYRIAD_FUNCTION located_crossing<R> first_of(const mask_set<bool, m>& crossed, F
 
 /// Element j by comparisons, so that a GPU thread's vector stays in registers: nvcc would put it into memory for an
 /// index that varies, and for a loop here, too.
-template <class R, int m>
+template <class R, extent m>
 MYRIAD_FUNCTION R element(const vec<R, m>& values, int j) {
-    R value = values[0];
-    static_for<1, m>([&](auto k) MYRIAD_LAMBDA {
-        const R other = values[k];
-        if (j == k) value = other;
-    });
-    return value;
+    if constexpr (m > MYRIAD_MOST_COPIES) {
+        return values[j];
+    } else {
+        R value = values[0];
+        static_for<1, m>([&](auto k) MYRIAD_LAMBDA {
+            const R other = values[k];
+            if (j == k) value = other;
+        });
+        return value;
+    }
 }
 
 /// The fraction of a step at which an event function crosses, from the cubic through its values and slopes at both
@@ -80,9 +84,14 @@ MYRIAD_FUNCTION located_crossing<R> only_crossing(const step_ends<Model, R>& ste
                                                   const vec<R, n_event<Model>>& tolerance) {
     const auto slope = step.slopes(), slope1 = step.slopes1();
     std::int32_t j = 0;
-    static_for<1, n_event<Model>>([&](auto k) MYRIAD_LAMBDA {
-        if (crossed[k]) j = k;
-    });
+    if constexpr (n_event < Model >> MYRIAD_MOST_COPIES) {
+        for (int k = 1; k < MYRIAD_LENGTH(n_event<Model>); ++k)
+            if (crossed[k]) j = k;
+    } else {
+        static_for<1, n_event<Model>>([&](auto k) MYRIAD_LAMBDA {
+            if (crossed[k]) j = k;
+        });
+    }
     const R sign = detail::element(side, j), per_step = sign * step.h;
     const R fraction =
         detail::fraction_at<R>({sign * detail::element(step.g, j), per_step * detail::element(slope, j),

@@ -8,7 +8,7 @@
 namespace myriad::detail::inline MYRIAD_TARGET {
 
 /// The event functions at the end of a trial, compared with the sides they were on.
-template <class S, int events>
+template <class S, extent events>
 struct event_detection {
     vec<S, events> g1;
     mask_set<mask_of<S>, events> crossed;  // on the other side than it was, by the sign of its value

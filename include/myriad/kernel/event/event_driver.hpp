@@ -20,7 +20,7 @@ class event_driver {
 public:
     using R = real_of<S>;
     using mask = mask_of<S>;
-    static constexpr int m = n_event<Model>;
+    static constexpr auto m = n_event<Model>;
     using values = vec<S, m>;  // of the event functions in all lanes
     using masks = mask_set<mask, m>;
     using trial_type = trial_step<Method, S, n_state<Model>>;
@@ -78,7 +78,7 @@ public:
     MYRIAD_FUNCTION mask defined(const detection& detected) const {
         mask lanes = !e_.flags[e_.undefined];
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) lanes = lanes & (detected.g1[j] == detected.g1[j]);
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) lanes = lanes & (detected.g1[j] == detected.g1[j]);
         return lanes;
     }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "myriad/kernel/core/static_for.hpp"
+#include "myriad/kernel/model/jacobian_pattern.hpp"
 #include "myriad/kernel/model/lane.hpp"
 #include "myriad/kernel/scalar/dual.hpp"
 #include "myriad/kernel/scalar/math.hpp"
@@ -22,11 +23,11 @@ MYRIAD_FUNCTION vec<S, n_event<Model>> event_slopes(const S& t, const vec<S, n_s
     using R = real_of<S>;
     vec<dual<S>, n_state<Model>> y_dual;
     MYRIAD_UNROLL
-    for (int c = 0; c < n_state<Model>; ++c) y_dual[c] = dual<S>(y[c], slope[c]);
+    for (int c = 0; c < MYRIAD_LENGTH(n_state<Model>); ++c) y_dual[c] = dual<S>(y[c], slope[c]);
     const auto g = Model::template events<dual<S>>(dual<S>(t, S(R(1))), y_dual, p);
     vec<S, n_event<Model>> slopes;
     MYRIAD_UNROLL
-    for (int j = 0; j < n_event<Model>; ++j) slopes[j] = g[j].derivative;
+    for (int j = 0; j < MYRIAD_LENGTH(n_event<Model>); ++j) slopes[j] = g[j].derivative;
     return slopes;
 }
 
@@ -48,18 +49,23 @@ MYRIAD_FUNCTION vec<R, n_event<Model>> compute_roundings(const R& t, const vec<R
                                                          const inputs<Model, R>& p) {
     constexpr R least = smallest_normal_of<R> / epsilon_of<R>;
     vec<dual<R>, n_state<Model>> y_dual;
-    static_for<0, n_state<Model>>([&](auto c) MYRIAD_LAMBDA {
-        if constexpr (team_size<Model> == 1) {
-            constexpr R weight = rounding_weight<R>(decltype(c)::value);
-            y_dual[c] = dual<R>(y[c], weight * (size[c] + least));
-        } else {
+    if constexpr (n_state < Model >> largest_traced_system) {
+        for (int c = 0; c < MYRIAD_LENGTH(n_state<Model>); ++c)
             y_dual[c] = dual<R>(y[c], rounding_weight<R>(detail::whole_state<Model>(c)) * (size[c] + least));
-        }
-    });
+    } else {
+        static_for<0, n_state<Model>>([&](auto c) MYRIAD_LAMBDA {
+            if constexpr (team_size<Model> == 1) {
+                constexpr R weight = rounding_weight<R>(decltype(c)::value);
+                y_dual[c] = dual<R>(y[c], weight * (size[c] + least));
+            } else {
+                y_dual[c] = dual<R>(y[c], rounding_weight<R>(detail::whole_state<Model>(c)) * (size[c] + least));
+            }
+        });
+    }
     const auto g = Model::template events<dual<R>>(dual<R>(t, R(0.5) * t), y_dual, p);
     vec<R, n_event<Model>> rounding;
     MYRIAD_UNROLL
-    for (int j = 0; j < n_event<Model>; ++j) {
+    for (int j = 0; j < MYRIAD_LENGTH(n_event<Model>); ++j) {
         const R change = abs(g[j].derivative);
         rounding[j] = change < infinity_of<R> ? R(8) * epsilon_of<R> * change : R(0);
     }
@@ -107,7 +113,7 @@ MYRIAD_FUNCTION vec<R, n_event<Model>> event_roundings(const R& t, const vec<R, 
                                                        const inputs<Model, R>& p, event_place<Model, R>* place) {
     vec<R, n_state<Model>> size;
     MYRIAD_UNROLL
-    for (int c = 0; c < n_state<Model>; ++c) size[c] = abs(y[c]);
+    for (int c = 0; c < MYRIAD_LENGTH(n_state<Model>); ++c) size[c] = abs(y[c]);
     return detail::event_roundings<Model>(t, y, size, p, place);
 }
 
@@ -122,10 +128,10 @@ MYRIAD_FUNCTION bool tells_heading(R slope) {
 /// functions whose own slope is zero and says nothing, as that of x^3 at x = 0.
 template <class Model, class R>
 MYRIAD_RARE_FUNCTION void find_first_signs(event_place<Model, R>* path) {
-    constexpr int n = n_state<Model>, m = n_event<Model>;
+    constexpr auto n = n_state<Model>, m = n_event<Model>;
     path->here = detail::evaluate_events<Model>(path->t, path->y, path->p);
     MYRIAD_UNROLL
-    for (int j = 0; j < m; ++j) path->sign[j] = R(0);
+    for (int j = 0; j < MYRIAD_LENGTH(m); ++j) path->sign[j] = R(0);
     const R least = R(64) * epsilon_of<R> * (abs(path->t) + abs(path->h));
     path->length = copysign(max(least, path->first), path->h);
     MYRIAD_ROLLED
@@ -133,7 +139,7 @@ MYRIAD_RARE_FUNCTION void find_first_signs(event_place<Model, R>* path) {
         MYRIAD_OPTIMISATION_BARRIER(path);  // else what it points to occupies registers throughout
         const R length = path->length;
         MYRIAD_UNROLL
-        for (int c = 0; c < n; ++c) {
+        for (int c = 0; c < MYRIAD_LENGTH(n); ++c) {
             path->there[c] = fma(length, fma(R(0.5) * length, path->bend[c], path->slope[c]), path->y[c]);
             path->size[c] = abs(path->there[c]);
         }
@@ -142,7 +148,7 @@ MYRIAD_RARE_FUNCTION void find_first_signs(event_place<Model, R>* path) {
         const auto g = detail::evaluate_events<Model>(path->t + path->length, path->there, path->p);
         bool all = true;
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
             const R rounding = path->rounding[j];
             const bool shows = abs(g[j]) > rounding && abs(g[j] - path->here[j]) > rounding;
             if (path->sign[j] == R(0) && shows) path->sign[j] = g[j] > R(0) ? R(1) : R(-1);

@@ -27,7 +27,7 @@ struct trial_ends {
 template <class Model, class Method, class S>
 struct event_location {
     using R = real_of<S>;
-    static constexpr int m = n_event<Model>;
+    static constexpr auto m = n_event<Model>;
     using reals = vec<R, m>;  // of the event functions in one lane
     using flags = mask_set<bool, m>;
     using fired = fired_events<Model, S>;
@@ -54,7 +54,7 @@ struct event_location {
         auto& redo = own.redo;
         const bool again = sides.is_locating(i) && redo.target != redo.none;
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
             // What is zero at the end of the trial, up to rounding, may cross with the others; one that crosses later
             // keeps its side.
             bool undecided = again && redo.crossed[j] && abs(step.g1[j]) <= near.band(j);
@@ -86,7 +86,8 @@ struct event_location {
         auto& scratch = sides.scratch();
         const reals rounding = near.roundings_at_start(step, &scratch.place);
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) own.at_jump.set(j, !(side[j] * step.g[j] <= max(redo.tolerance[j], rounding[j])));
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j)
+            own.at_jump.set(j, !(side[j] * step.g[j] <= max(redo.tolerance[j], rounding[j])));
         scratch.crosses.clear();
         if constexpr (!Nearness::is_plain) {
             if (!again) {
@@ -97,7 +98,7 @@ struct event_location {
         // Others whose crossing cannot be told from this one, as where a redone step arrives; or those that lie with it
         // between the start and the shortest trial beyond it.
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
             const bool along = scratch.crosses[j] && side[j] * scratch.heading[j] < R(0);
             const bool happens = redo.target == j || (again ? crossed[j] : along);
             events.put(j, i, happens, step.g[j]);

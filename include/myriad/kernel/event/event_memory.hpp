@@ -33,7 +33,7 @@ struct event_memory {
         open.clear(), held.clear(), fired_last.clear(), fresh.clear(), on_jump.clear();
         moves = 0;
         MYRIAD_UNROLL
-        for (int j = 0; j < n_event<Model>; ++j) lingered[j] = 0, moved_at[j] = 0;
+        for (int j = 0; j < MYRIAD_LENGTH(n_event<Model>); ++j) lingered[j] = 0, moved_at[j] = 0;
     }
 };
 
@@ -46,7 +46,7 @@ struct step_part {
 };
 
 /// What `step_scan` works on.
-template <class R, int events>
+template <class R, extent events>
 struct scanned_part {
     vec<dual<R>, events> before, after, inside;  // the event functions, with their slopes per step, at points of it
     R theta;                                     // the end of the part that is looked at
@@ -96,7 +96,7 @@ MYRIAD_RARE_FUNCTION void look_around(event_scratch<Model, R>* at, const event_m
     at->crosses.clear();
     at->flat = false;
     MYRIAD_ROLLED
-    for (at->function = 0; at->function < n_event<Model>; ++at->function) {
+    for (at->function = 0; at->function < MYRIAD_LENGTH(n_event<Model>); ++at->function) {
         MYRIAD_OPTIMISATION_BARRIER(at);  // else what it points to occupies registers throughout
         const int j = at->function;
         at->heading[j] = at->slope[j] != R(0) ? copysign(R(1), at->slope[j] * place.h) : R(0);
@@ -109,7 +109,8 @@ MYRIAD_RARE_FUNCTION void look_around(event_scratch<Model, R>* at, const event_m
         if (!(at->tolerance[j] > place.rounding[j]) && is_short) {
             const R length = copysign(place.length, place.h);
             MYRIAD_UNROLL
-            for (int c = 0; c < n_state<Model>; ++c) place.there[c] = fma(length, place.slope[c], place.y[c]);
+            for (int c = 0; c < MYRIAD_LENGTH(n_state<Model>); ++c)
+                place.there[c] = fma(length, place.slope[c], place.y[c]);
             place.sign = detail::evaluate_events<Model>(place.t + length, place.there, place.p);
             MYRIAD_OPTIMISATION_BARRIER(at);
             g = place.sign[at->function], bound = R(0);
@@ -123,7 +124,7 @@ MYRIAD_FUNCTION void find_headings_without_slope(event_scratch<Model, R>* at) {
     if (!MYRIAD_UNLIKELY(at->flat)) return;
     detail::find_first_signs(&at->place);
     MYRIAD_UNROLL
-    for (int j = 0; j < n_event<Model>; ++j)
+    for (int j = 0; j < MYRIAD_LENGTH(n_event<Model>); ++j)
         if (!detail::tells_heading(at->slope[j])) at->heading[j] = at->place.sign[j];
 }
 
@@ -144,14 +145,15 @@ MYRIAD_RARE_FUNCTION void begin_beyond(event_scratch<Model, R>* at, const event_
     place.y = step.y1, place.slope = step.slope1;
     const R per_time = reciprocal(step.h);
     MYRIAD_UNROLL
-    for (int c = 0; c < n_state<Model>; ++c) place.bend[c] = (step.slope1[c] - step.slope[c]) * per_time;
+    for (int c = 0; c < MYRIAD_LENGTH(n_state<Model>); ++c) place.bend[c] = (step.slope1[c] - step.slope[c]) * per_time;
     MYRIAD_ROLLED
-    for (at->function = 0; at->function < n_event<Model>; ++at->function) {
+    for (at->function = 0; at->function < MYRIAD_LENGTH(n_event<Model>); ++at->function) {
         MYRIAD_OPTIMISATION_BARRIER(at);  // else what it points to occupies registers throughout
         const auto steps = iterations - own->moved_at[at->function] + steps_of_location * own->moves;
         place.length = copysign(rounding * static_cast<R>(steps), step.h);
         MYRIAD_UNROLL
-        for (int c = 0; c < n_state<Model>; ++c) place.there[c] = fma(place.length, step.slope1[c], step.y1[c]);
+        for (int c = 0; c < MYRIAD_LENGTH(n_state<Model>); ++c)
+            place.there[c] = fma(place.length, step.slope1[c], step.y1[c]);
         place.here = detail::evaluate_events<Model>(step.t1 + place.length, place.there, place.p);
         MYRIAD_OPTIMISATION_BARRIER(at);
         const int j = at->function;

@@ -26,7 +26,7 @@ struct plain_nearness {
 };
 
 /// For any functions. It lies in memory, as few steps need it.
-template <class R, int events>
+template <class R, extent events>
 struct event_nearness {
     static constexpr bool is_plain = false;
 

@@ -25,7 +25,7 @@ struct fired_events {
         which.clear();
         changed = mask_of<S>(false);
         MYRIAD_UNROLL
-        for (int j = 0; j < n_event<Model>; ++j) value[j] = S(real_of<S>(0));
+        for (int j = 0; j < MYRIAD_LENGTH(n_event<Model>); ++j) value[j] = S(real_of<S>(0));
     }
 };
 

@@ -13,7 +13,7 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 template <class Model, class Method, class S>
 struct general_locator {
     using R = real_of<S>;
-    static constexpr int m = n_event<Model>;
+    static constexpr auto m = n_event<Model>;
     using reals = vec<R, m>;  // of the event functions in one lane
     using flags = mask_set<bool, m>;
     using ends_of_step = step_ends<Model, R>;
@@ -35,7 +35,7 @@ struct general_locator {
         flags crossed;
         crossed.clear();
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
             side[j] = sides.side_of(j, i);
             // A function that has not been on its side since its event has not crossed from there while it comes
             // nearer.
@@ -67,7 +67,7 @@ struct general_locator {
             reached = arrival_of(i, step, side);
             // At a root in the other direction, to which a long step has come, the event's is anywhere beyond.
             MYRIAD_UNROLL
-            for (int j = 0; j < m; ++j)
+            for (int j = 0; j < MYRIAD_LENGTH(m); ++j)
                 if (part.scanned && own.redo.target == j && !sides.is_asked(j, side[j])) reached.gap = infinity_of<R>;
         }
         if (!part.scanned && (crossed.any_of() || (seeking ? !reached.is_plain() : is_last)))
@@ -95,7 +95,7 @@ private:
         const auto& near = sides.memory_of(i).near;
         bool any_near = false;
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
             const bool given = sides.args.event[j].tolerance > R(0);
             const R close = given ? near.band(j) : max(near.band(j), R(last_part) * abs(step.g[j] - step.g1[j]));
             any_near = any_near || abs(step.g1[j]) <= close;
@@ -110,7 +110,7 @@ private:
     MYRIAD_FUNCTION void evaluate_start(int i, ends_of_step& step, const reals& side) const {
         step.g = detail::evaluate_events<Model>(step.t, step.y, step.p);
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j)
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j)
             if (sides.memory_of(i).on_jump[j]) step.g[j] = copysign(R(infinity_of<R>), side[j]);
     }
     /// How near to its event a redone step that did not cross has ended.
@@ -129,7 +129,7 @@ private:
         const auto& near = sides.memory_of(i).near;
         arrival reached{R(0), R(0), R(0), false, true};
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
             reached.all_left = reached.all_left && sides.e.left.get(j, i);
             if (redo.target == j) {
                 reached.gap = side[j] * step.g1[j];
@@ -168,7 +168,7 @@ private:
         // It leaves the surface where it fired last, so that its crossing is later, however near it is to zero.
         bool leaves = false;
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
             if (redo.target != j) continue;
             approach = side[j] * slope[j];
             leaves = !reached.all_left && !e.left.get(j, i) && reached.gap >= R(0) && side[j] * heading[j] > R(0);
@@ -182,7 +182,8 @@ private:
             } else {
                 further = abs(reached.gap) <= reached.band && redo.improve(step.h, guess, reached.gap > R(0));
                 MYRIAD_UNROLL
-                for (int j = 0; j < m; ++j)  // of those that cross in the shortest trial known to end beyond
+                for (int j = 0; j < MYRIAD_LENGTH(m);
+                     ++j)  // of those that cross in the shortest trial known to end beyond
                     if (redo.target != j && !(reached.gap > R(0)) && !here[j]) redo.crossed.set(j, false);
             }
             if (further) {
@@ -194,7 +195,7 @@ private:
             const R ahead = -(reached.gap + reached.close) * reciprocal(approach);
             bool undecided = false;
             MYRIAD_UNROLL
-            for (int j = 0; j < m; ++j) {
+            for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
                 if (redo.target == j || !redo.crossed[j] || !(side[j] * heading[j] < R(0))) continue;
                 const bool soon = slope[j] == R(0) || abs(step.g1[j]) <= R(2) * abs(slope[j] * ahead);
                 undecided = undecided || (soon && !here[j]);
@@ -206,7 +207,7 @@ private:
         }
         const bool timeless = sides.is_timeless(i, step.h);
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
             const R band = near.band(j);
             const bool heads = here[j] && side[j] * heading[j] < R(0);
             const bool jumps = narrow && side[j] * step.g1[j] > band && !here[j];
@@ -229,7 +230,7 @@ private:
         detail::find_first_signs(&found.place);
         own.at_jump.clear();
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
             const bool reaches = side[j] * step.g1[j] <= R(0) || side[j] * found.heading[j] <= R(0);
             const bool close = abs(step.g1[j]) <= sides.args.event[j].end_tolerance;
             const bool happens = reaches && close && sides.is_asked(j, side[j]) && side[j] * found.place.sign[j] < R(0);

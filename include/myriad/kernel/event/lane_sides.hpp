@@ -24,7 +24,7 @@ MYRIAD_FUNCTION R sign_of(R x) {
 template <class Model, class Method, class S>
 struct lane_sides {
     using R = real_of<S>;
-    static constexpr int m = n_event<Model>;
+    static constexpr auto m = n_event<Model>;
     using reals = vec<R, m>;  // of the event functions in one lane
     using flags = mask_set<bool, m>;
     using masks = mask_set<mask_of<S>, m>;
@@ -92,7 +92,7 @@ struct lane_sides {
     MYRIAD_FUNCTION bool are_beyond_tolerances(const reals& g) const {
         bool beyond = true;
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) beyond = beyond && is_beyond_tolerance(j, g[j]);
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) beyond = beyond && is_beyond_tolerance(j, g[j]);
         return beyond;
     }
     /// The rounding errors of the event functions g at the committed state, or zero if those in question are farther
@@ -100,7 +100,7 @@ struct lane_sides {
     MYRIAD_FUNCTION reals roundings_if_needed(int i, const reals& g, const flags& in_question) const {
         bool clear = true;
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) clear = clear && (!in_question[j] || is_beyond_tolerance(j, g[j]));
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) clear = clear && (!in_question[j] || is_beyond_tolerance(j, g[j]));
         if (clear) return reals{};
         return detail::event_roundings<Model>(get_lane(s.now(), i), get_lanes<R>(s.data.y, i), inputs_of(i),
                                               &scratch().place);

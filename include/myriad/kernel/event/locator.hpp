@@ -18,7 +18,7 @@ template <class Model, class Method, class S>
 struct event_locator {
     using R = real_of<S>;
     using mask = mask_of<S>;
-    static constexpr int m = n_event<Model>;
+    static constexpr auto m = n_event<Model>;
     using reals = vec<R, m>;  // of the event functions in one lane
     using flags = mask_set<bool, m>;
     using ends_of_step = step_ends<Model, R>;
@@ -79,7 +79,7 @@ private:
         flags above = e.above.of_lane(i);
         bool plain = !sides.is_timeless(i, step.h);
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
             const R tolerance = sides.args.event[j].tolerance, g = step.g1[j], first = slope[j] * step.h;
             plain = plain && tolerance > R(0) && abs(g) > tolerance;
             if (own.open[j]) {
@@ -109,7 +109,7 @@ private:
         bool plain = sides.args.sub_samples <= 1 && !(own.open | own.on_jump).any_of();
         bool arrives = false, others = false;
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
             const R tolerance = sides.args.event[j].tolerance, g = abs(step.g1[j]);
             const bool left = sides.e.left.get(j, i), stays = (step.g1[j] > R(0)) == sides.e.above.get(j, i);
             const bool is_target = own.redo.target == j;
@@ -128,7 +128,7 @@ private:
         if (crossed.any_of()) {
             reals side;
             MYRIAD_UNROLL
-            for (int j = 0; j < m; ++j) side[j] = sides.e.above.get(j, i) ? R(1) : R(-1);
+            for (int j = 0; j < MYRIAD_LENGTH(m); ++j) side[j] = sides.e.above.get(j, i) ? R(1) : R(-1);
             step.g = detail::evaluate_events<Model>(step.t, step.y, step.p);
             location{sides}.evaluate_end_slope(i, step, ends);
             location{sides}.begin_or_shorten(i, step, side, crossed, step_part<R>{},
@@ -137,7 +137,7 @@ private:
         }
         own.at_jump.clear();
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) events.put(j, i, own.redo.target == j, step.g1[j]);
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) events.put(j, i, own.redo.target == j, step.g1[j]);
         location{sides}.end(i);
         return trial_outcome::stands_before_sides;
     }

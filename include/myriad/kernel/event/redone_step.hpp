@@ -12,7 +12,7 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 
 /// The location of one instance's event. Lengths are signed, like the step. Few steps need it, so it lies in memory,
 /// not in a GPU thread's registers.
-template <class R, int events>
+template <class R, extent events>
 struct redone_step {
     /// Number of trials after which bisection replaces a guess that does not converge.
     static constexpr std::int32_t most_guesses = 10;

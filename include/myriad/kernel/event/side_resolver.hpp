@@ -14,8 +14,8 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 template <class Model, class Method, class S>
 struct side_resolver {
     using R = real_of<S>;
-    static constexpr int n = n_state<Model>;
-    static constexpr int m = n_event<Model>;
+    static constexpr auto n = n_state<Model>;
+    static constexpr auto m = n_event<Model>;
     using reals = vec<R, m>;  // of the event functions in one lane
     using flags = mask_set<bool, m>;
     using state = vec<R, n>;
@@ -33,13 +33,13 @@ struct side_resolver {
         at_jump.clear();
         in_question.clear();
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
             const bool fired_there = kept_event(sides.kept_at(j, i)).kind() == kept_side::fired;
             in_question.set(j, !(fired_there && args.event[j].tolerance > R(0)));
         }
         const reals rounding = sides.roundings_if_needed(i, g, in_question);
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
             const kept_event kept(sides.kept_at(j, i));
             const kept_side kind = kept.kind();
             const bool fired = kind == kept_side::fired, keeps = fired || kind == kept_side::within;
@@ -72,10 +72,10 @@ struct side_resolver {
         flags in_question;
         in_question.clear();
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) in_question.set(j, !sides.is_fresh(j, i));
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) in_question.set(j, !sides.is_fresh(j, i));
         const reals rounding = sides.roundings_if_needed(i, g, in_question);
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
             const R side = sides.side_of(j, i);
             kept_side kept = side * g[j] > rounding[j] ? kept_side::beyond : kept_side::within;
             if (sides.is_fresh(j, i)) kept = kept_side::fired;
@@ -96,7 +96,7 @@ struct side_resolver {
         const reals slope = step.slopes();
         const reals heading = headings(slope, open, step.t, step.y, step.slope, step.h, step.p, &sides.scratch().place);
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
             if (!open[j]) continue;
             const bool turns = fired_last[j] && abs(slope[j] * step.h) > rounding[j];
             sides.put_side(j, i, held[j] && !turns ? (sides.e.above.get(j, i) ? R(1) : R(-1)) : heading[j]);
@@ -110,7 +110,7 @@ struct side_resolver {
         auto& e = sides.e;
         auto& own = sides.memory_of(i);
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
             if (sides.is_at_jump(j, i, step.h)) continue;  // after the trial it is still at the jump where it fired
             own.on_jump.set(j, false);
             own.fresh.set(j, false);
@@ -134,7 +134,7 @@ struct side_resolver {
         reals g = get_lanes<R>(events.value, i), slope = slope_before, heading = before;
         bool known = !get_lane(events.changed, i);
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) known = known && !on_jump[j] && !fires_at_jump(j, i, events);
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) known = known && !on_jump[j] && !fires_at_jump(j, i, events);
         state along;  // the slope of the state, where it is needed
         if (!known) {
             along = s.slope_of(i);
@@ -150,7 +150,7 @@ struct side_resolver {
         at_jump.clear();
         in_question.clear();
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
             const bool moved = g[j] != get_lane(events.value[j], i);
             in_question.set(j, moved || on_jump[j] || fires_at_jump(j, i, events));
         }
@@ -160,18 +160,18 @@ struct side_resolver {
         flags moved_near;
         moved_near.clear();
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
             const bool others = !events.which.get(j, i) && !on_jump[j] && g[j] != get_lane(events.value[j], i);
             moved_near.set(j, others && detail::tells_heading(slope[j]) && abs(g[j]) <= abs(slope[j]) * location_error);
         }
         if (MYRIAD_UNLIKELY(moved_near.any_of())) {
             const R error = time_error(i, events, slope_before, location_error);
             MYRIAD_UNROLL
-            for (int j = 0; j < m; ++j)
+            for (int j = 0; j < MYRIAD_LENGTH(m); ++j)
                 if (moved_near[j] && abs(g[j]) <= abs(slope[j]) * error) sides.put_side(j, i, heading[j]);
         }
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
             const bool fires = events.which.get(j, i), waits = !fires && on_jump[j];
             const bool jumps = fires_at_jump(j, i, events);
             // An action that hardly moves its event's function leaves it on the surface: as closely as it was located,
@@ -206,7 +206,7 @@ struct side_resolver {
         auto& own = sides.memory_of(i);
         ++own.moves;
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j)
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j)
             if (events.which.get(j, i) && in_question[j]) own.moved_at[j] = s.iterations_of(sides.args, i);
         sides.update_in_question(i);
     }
@@ -219,7 +219,7 @@ struct side_resolver {
         reals heading;
         bool flat = false;
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
             heading[j] = sign_of(slope[j]) * sign_of(h);
             flat = flat || (wanted[j] && !detail::tells_heading(slope[j]));
         }
@@ -229,7 +229,7 @@ struct side_resolver {
         path->y = y, path->slope = along, path->bend = state{};
         detail::find_first_signs(path);
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j)
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j)
             if (!detail::tells_heading(slope[j])) heading[j] = path->sign[j];
         return heading;
     }
@@ -250,7 +250,7 @@ private:
         jumps.clear();
         smooth.clear();
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
             jumps.set(j, fires_at_jump(j, i, events));
             smooth.set(j, events.which.get(j, i) && !jumps[j]);
         }
@@ -259,7 +259,7 @@ private:
         if (!jumps.any_of()) return heading;
         const reals g = values_ahead(i, at, along);
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
             if (!jumps[j]) continue;
             const R side = sides.side_of(j, i);
             heading[j] = g[j] * side > R(0) ? side : -side;
@@ -274,7 +274,7 @@ private:
         const auto& near = sides.memory_of(i).near;
         R error = R(0);
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
             if (!events.which.get(j, i)) continue;
             const R tolerance = sides.args.event[j].tolerance;
             const R value =
@@ -299,7 +299,7 @@ private:
         const R t = get_lane(sides.s.now(), i), ahead = copysign(past_jump(i), get_lane(at.t_end, i) - t);
         state y = get_lanes<R>(at.y, i);
         MYRIAD_UNROLL
-        for (int c = 0; c < n; ++c) {
+        for (int c = 0; c < MYRIAD_LENGTH(n); ++c) {
             const R rounding = R(roundings_ahead) * epsilon_of<R> * abs(y[c]);
             y[c] += fma(ahead, slope[c], sign_of(slope[c]) * sign_of(ahead) * rounding);
         }
@@ -315,11 +315,11 @@ private:
         for (int k = 0; k < most_doublings; ++k) {
             state y = get_lanes<R>(s.data.y, i);
             MYRIAD_UNROLL
-            for (int c = 0; c < n; ++c) y[c] = fma(ahead, slope[c], y[c]);
+            for (int c = 0; c < MYRIAD_LENGTH(n); ++c) y[c] = fma(ahead, slope[c], y[c]);
             const reals g = detail::evaluate_events<Model>(t + ahead, y, sides.inputs_of(i));
             bool passed = true;
             MYRIAD_UNROLL
-            for (int j = 0; j < m; ++j) passed = passed && (!on_jump[j] || g[j] * there[j] > R(0));
+            for (int j = 0; j < MYRIAD_LENGTH(m); ++j) passed = passed && (!on_jump[j] || g[j] * there[j] > R(0));
             ahead *= R(2);
             if (passed) break;
         }
@@ -329,7 +329,7 @@ private:
     MYRIAD_FUNCTION void take_sides_ahead(int i, const flags& at_jump, const reals& g, const state& slope) const {
         const reals there = values_ahead(i, sides.s.data, slope);
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
             if (!at_jump[j] || !(there[j] > R(0) || there[j] < R(0))) continue;
             sides.put_side(j, i, sign_of(there[j]));
             if (g[j] * there[j] < R(0)) {

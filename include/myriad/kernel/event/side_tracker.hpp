@@ -14,7 +14,7 @@ template <class Model, class Method, class S>
 struct side_tracker {
     using R = real_of<S>;
     using mask = mask_of<S>;
-    static constexpr int m = n_event<Model>;
+    static constexpr auto m = n_event<Model>;
     using values = vec<S, m>;  // of the event functions in all lanes
     using reals = vec<R, m>;   // in one lane
     using flags = mask_set<bool, m>;
@@ -38,7 +38,7 @@ struct side_tracker {
         bool clear = sides.are_beyond_tolerances(g);
         if (!e.flags.get(e.kept_plain, i)) {
             MYRIAD_UNROLL
-            for (int j = 0; j < m; ++j) clear = clear && kept_event(sides.kept_at(j, i)).is_plain();
+            for (int j = 0; j < MYRIAD_LENGTH(m); ++j) clear = clear && kept_event(sides.kept_at(j, i)).is_plain();
         }
         if (MYRIAD_UNLIKELY(!clear)) resolver{sides}.begin(i, g);
     }
@@ -56,14 +56,15 @@ struct side_tracker {
         e.flags.set(e.kept_plain, i, clear);
         if (MYRIAD_UNLIKELY(!clear)) return resolver{sides}.store(i, g);
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) sides.kept_at(j, i) = kept_event(above[j], kept_side::beyond, 0).code();
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j)
+            sides.kept_at(j, i) = kept_event(above[j], kept_side::beyond, 0).code();
     }
     /// Takes the sides of an instance that is new in lane i from where an earlier call has kept them.
     MYRIAD_FUNCTION void load(int i) const { sides.e.flags.set(sides.e.kept_plain, i, false); }
     /// Makes the next phase of lane i begin with all sides unknown.
     MYRIAD_FUNCTION void reset(int i) const {
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) sides.kept_at(j, i) = 0;
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) sides.kept_at(j, i) = 0;
     }
 
     /// Updates the sides after a hook changed inputs of event functions, whose values were `before`. A function that
@@ -78,11 +79,11 @@ struct side_tracker {
             flags moved;
             moved.clear();
             MYRIAD_UNROLL
-            for (int j = 0; j < m; ++j)
+            for (int j = 0; j < MYRIAD_LENGTH(m); ++j)
                 moved.set(j, !events.which.get(j, i) && !own.on_jump[j] && get_lane(g[j], i) != get_lane(before[j], i));
             const reals rounding = sides.roundings_if_needed(i, get_lanes<R>(g, i), moved);
             MYRIAD_UNROLL
-            for (int j = 0; j < m; ++j) {
+            for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
                 const R now = get_lane(g[j], i), then = get_lane(before[j], i);
                 undefined = undefined || now != now;
                 if (!moved[j]) continue;
@@ -116,7 +117,7 @@ private:
         flags below;
         below.clear();
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) below.set_negative(j, g[j]);
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) below.set_negative(j, g[j]);
         return below;
     }
 };

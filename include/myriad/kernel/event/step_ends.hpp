@@ -34,7 +34,8 @@ struct step_ends {
     MYRIAD_FUNCTION event_values roundings(event_place<Model, R>* place) const {
         state size;
         MYRIAD_UNROLL
-        for (int c = 0; c < n_state<Model>; ++c) size[c] = max(abs(y[c]), abs(y1[c])) + abs(h * slope[c]);
+        for (int c = 0; c < MYRIAD_LENGTH(n_state<Model>); ++c)
+            size[c] = max(abs(y[c]), abs(y1[c])) + abs(h * slope[c]);
         return detail::event_roundings<Model>(t1, y1, size, p, place);
     }
     /// Slopes of the event functions along the solution, at the start and at the end.

@@ -12,7 +12,7 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 template <class Model, class Method, class S>
 struct step_scan {
     using R = real_of<S>;
-    static constexpr int m = n_event<Model>;
+    static constexpr auto m = n_event<Model>;
     using reals = vec<R, m>;         // of the event functions in one lane
     using moving = vec<dual<R>, m>;  // with their slopes per step
     using flags = mask_set<bool, m>;
@@ -40,14 +40,14 @@ struct step_scan {
             at->theta = last ? R(1) : static_cast<R>(at->points) / static_cast<R>(sides.args.sub_samples);
             find_values(&step, at->theta, &at->after);
             MYRIAD_UNROLL
-            for (int j = 0; j < m; ++j)
+            for (int j = 0; j < MYRIAD_LENGTH(m); ++j)
                 if (at->theta == R(1)) at->after[j].value = step.g1[j];
             at->turns = 0;
             MYRIAD_ROLLED
             while (true) {
                 MYRIAD_OPTIMISATION_BARRIER(at);
                 at->place = at->theta;
-                if (at->turns++ < m) find_turn(step, side, part.low, at);
+                if (at->turns++ < MYRIAD_LENGTH(m)) find_turn(step, side, part.low, at);
                 const R place = at->place;
                 const bool turns_there = place > part.low && place < at->theta;
                 if (turns_there) {
@@ -86,7 +86,7 @@ private:
     /// first and away from it at the second turns, if there is one: by bisection, since such a function may be flat.
     MYRIAD_FUNCTION void find_turn(const ends_of_step& step, const reals& side, R from, scanned_part<R, m>* at) const {
         MYRIAD_ROLLED
-        for (at->function = 0; at->function < m; ++at->function) {
+        for (at->function = 0; at->function < MYRIAD_LENGTH(m); ++at->function) {
             MYRIAD_OPTIMISATION_BARRIER(at);
             const int j = at->function;
             const dual<R> before = at->before[j], after = at->after[j];
@@ -116,13 +116,13 @@ private:
         flags crossed;
         crossed.clear();
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
             const R past = max(own.near.allowance(j), place.rounding[j]);
             crossed.set(j, sides.crosses(j, side[j], (*g)[j].value, past) && !sides.is_at_jump(j, i, length));
         }
         if (crossed.any_of()) return crossed;
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
             const R value = (*g)[j].value, past = max(own.near.allowance(j), place.rounding[j]);
             if (!(abs(value) > past) || sides.is_at_jump(j, i, length)) continue;
             side[j] = sign_of(value);

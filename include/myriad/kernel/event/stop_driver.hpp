@@ -16,7 +16,7 @@ template <class Model, class Method, class S>
 struct stop_driver {
     using R = real_of<S>;
     using mask = mask_of<S>;
-    static constexpr int kinds = n_stop<Model>;
+    static constexpr auto kinds = n_stop<Model>;
 
     const kernel_arguments<Model, R>& args;
     integration_state<Model, Method, S>& s;
@@ -27,7 +27,7 @@ struct stop_driver {
         const R t = get_lane(s.data.t, i);
         s.stops.backwards[i] = get_lane(s.data.t_end, i) < t;
         MYRIAD_UNROLL
-        for (int j = 0; j < kinds; ++j) {
+        for (int j = 0; j < MYRIAD_LENGTH(kinds); ++j) {
             s.stops.number[i][j] = 0;
             s.stops.acted[i][j] = continues ? t : never;
         }
@@ -53,7 +53,7 @@ struct stop_driver {
         status ending = status::success;
         for (std::int32_t rounds = 0;; ++rounds) {
             bool acted = false;
-            static_for<0, kinds>([&](auto j) MYRIAD_LAMBDA {
+            const auto act_on = [&](auto j) MYRIAD_LAMBDA {
                 std::int32_t& next = s.stops.number[i][j];
                 const std::int32_t number = next;
                 if (time_of(detail::inputs_of_lane(s.data, i), j, number) != t) return;
@@ -65,7 +65,12 @@ struct stop_driver {
                 s.stops.acted[i][j] = t;
                 action(j, number);
                 acted = true;
-            });
+            };
+            if constexpr (kinds > MYRIAD_MOST_COPIES) {
+                for (int j = 0; j < MYRIAD_LENGTH(kinds); ++j) act_on(j);
+            } else {
+                static_for<0, kinds>(act_on);
+            }
             update(i);
             if (!acted) return ending;
         }
@@ -86,7 +91,7 @@ private:
         const auto& p = detail::inputs_of_lane(s.data, i);
         R nearest = t_end;
         MYRIAD_UNROLL
-        for (int j = 0; j < kinds; ++j) {
+        for (int j = 0; j < MYRIAD_LENGTH(kinds); ++j) {
             pass_over(p, i, j, t);
             const R time = time_of(p, j, s.stops.number[i][j]);
             const bool nearer = t <= t_end ? time >= t && time < nearest : time <= t && time > nearest;

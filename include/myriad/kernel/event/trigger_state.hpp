@@ -26,8 +26,8 @@ struct trigger_state<Model, S, true> {
 template <class Model, class Method, class S>
 struct trigger_conditions {
     using R = real_of<S>;
-    static constexpr int m = n_event<Model>;
-    static constexpr int triggers = n_trigger<Model>;
+    static constexpr auto m = n_event<Model>;
+    static constexpr auto triggers = n_trigger<Model>;
 
     lane_sides<Model, Method, S> sides;
     trigger_state<Model, S>& t;
@@ -40,7 +40,7 @@ struct trigger_conditions {
         t.holds[i] = now;
         t.pending[i].clear();
         if (get_lane(sides.s.data.phase, i) > 0) return;
-        for (int j = 0; j < triggers; ++j) {
+        for (int j = 0; j < MYRIAD_LENGTH(triggers); ++j) {
             t.pending[i].set(j, now[j] && !holds_before_start(j));
             if constexpr (triggers_know_their_function<Model>) t.function[i][j] = -1;
         }
@@ -51,12 +51,12 @@ struct trigger_conditions {
         look(i);
         const auto now = conditions(i);
         if constexpr (triggers_know_their_function<Model>) {
-            for (int j = 0; j < triggers; ++j)
+            for (int j = 0; j < MYRIAD_LENGTH(triggers); ++j)
                 if (now[j] && !t.holds[i][j])
                     t.function[i][j] = turning(i, j, t.located.of_lane(i) & (before ^ t.seen.of_lane(i)));
         }
         t.pending[i] = t.pending[i] | (now & ~t.holds[i]);
-        for (int j = 0; j < triggers; ++j)
+        for (int j = 0; j < MYRIAD_LENGTH(triggers); ++j)
             if (!now[j] && !persists(j)) t.pending[i].set(j, false);
         t.holds[i] = now;
     }
@@ -74,7 +74,7 @@ struct trigger_conditions {
         const vec<R, m> slope = detail::event_slopes<Model>(now, get_lanes<R>(s.data.y, i), s.slope_of(i), p);
         bool any = false;
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) {
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
             if (!unknown(i)[j] || !detail::tells_heading(slope[j])) continue;
             sides.put_side(j, i, sign_of(slope[j]) * sense);
             any = true;
@@ -93,7 +93,7 @@ private:
     MYRIAD_FUNCTION void look(int i) const {
         const auto on_surface = unknown(i);
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) t.seen.set(j, i, on_surface[j] || sides.e.above.get(j, i));
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) t.seen.set(j, i, on_surface[j] || sides.e.above.get(j, i));
     }
     // Not in lambdas, where nvcc takes every such branch.
     static MYRIAD_FUNCTION bool holds_before_start(int trigger) {
@@ -113,7 +113,7 @@ private:
     /// The function among these that has made a condition hold, which would not without it; else any; else -1.
     MYRIAD_FUNCTION std::int32_t turning(int i, int trigger, const mask_set<bool, m>& turned) const {
         std::int32_t found = -1;
-        for (int f = 0; f < m; ++f) {
+        for (int f = 0; f < MYRIAD_LENGTH(m); ++f) {
             if (!turned[f]) continue;
             auto without = t.seen.of_lane(i);
             without.set(f, !without[f]);
@@ -126,7 +126,11 @@ private:
         const event_signs<m> positive(t.seen.of_lane(i));
         mask_set<bool, triggers> now;
         now.clear();
-        static_for<0, triggers>([&](auto j) MYRIAD_LAMBDA { now.set(j, Model::condition(j, positive)); });
+        if constexpr (triggers > MYRIAD_MOST_COPIES) {
+            for (int j = 0; j < MYRIAD_LENGTH(triggers); ++j) now.set(j, Model::condition(j, positive));
+        } else {
+            static_for<0, triggers>([&](auto j) MYRIAD_LAMBDA { now.set(j, Model::condition(j, positive)); });
+        }
         return now;
     }
 };

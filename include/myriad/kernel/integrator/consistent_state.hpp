@@ -13,7 +13,7 @@
 namespace myriad::detail::inline MYRIAD_TARGET {
 
 /// A state that satisfies the algebraic equations to the tolerances, or none.
-template <class R, int n>
+template <class R, extent n>
 struct consistent_state {
     vec<R, n> y;
     bool found, changed;
@@ -24,7 +24,7 @@ struct consistent_state {
 /// the tolerances allow of each state.
 template <class Model, class R>
 struct algebraic_solver {
-    static constexpr int n = n_state<Model>, count = n_algebraic<Model>;
+    static constexpr auto n = n_state<Model>, count = n_algebraic<Model>;
     using unknowns = vec<R, count>;
 
     R t;
@@ -126,7 +126,7 @@ template <class Model, class Method, class S>
 MYRIAD_FUNCTION state_correction make_state_consistent(const kernel_arguments<Model, real_of<S>>& args,
                                                        integration_state<Model, Method, S>& s, int i) {
     using R = real_of<S>;
-    constexpr int n = n_state<Model>;
+    constexpr auto n = n_state<Model>;
     const vec<R, n> y = get_lanes<R>(s.data.y, i);
     algebraic_solver<Model, R> equations{get_lane(s.data.t, i), detail::inputs_of_lane(s.data, i), {}};
     for (int c = 0; c < n; ++c)

@@ -17,7 +17,7 @@ struct free_run {
     using R = real_of<S>;
     using count = count_of<S>;
     using iteration_number = typename integration_state<Model, Method, S>::iteration_number;
-    static constexpr int n = n_state<Model>;
+    static constexpr auto n = n_state<Model>;
 
     const kernel_arguments<Model, R>& args;
     integration_state<Model, Method, S>& s;

@@ -16,8 +16,8 @@ template <class Model, class Method, class S>
 struct hook_driver {
     using R = real_of<S>;
     using mask = mask_of<S>;
-    static constexpr int n = n_state<Model>;
-    static constexpr int m = n_event<Model>;
+    static constexpr auto n = n_state<Model>;
+    static constexpr auto m = n_event<Model>;
 
     const kernel_arguments<Model, R>& args;
     integration_state<Model, Method, S>& s;
@@ -153,26 +153,26 @@ private:
     static MYRIAD_FUNCTION T chosen(const mask& lanes, const T& now, const T& before) {
         return select(lanes, now, before);
     }
-    template <class T, int size>
+    template <class T, extent size>
     static MYRIAD_FUNCTION vec<T, size> chosen(const mask& lanes, const vec<T, size>& now, const vec<T, size>& before) {
         vec<T, size> values;
         MYRIAD_UNROLL
-        for (int c = 0; c < size; ++c) values[c] = select(lanes, now[c], before[c]);
+        for (int c = 0; c < MYRIAD_LENGTH(size); ++c) values[c] = select(lanes, now[c], before[c]);
         return values;
     }
     /// The lanes in which they differ.
-    template <class T, int size>
+    template <class T, extent size>
     static MYRIAD_FUNCTION mask differing(const vec<T, size>& now, const vec<T, size>& before) {
         mask different = mask(false);
         MYRIAD_UNROLL
-        for (int c = 0; c < size; ++c) different = different | differs_in_bits(now[c], before[c]);
+        for (int c = 0; c < MYRIAD_LENGTH(size); ++c) different = different | differs_in_bits(now[c], before[c]);
         return different;
     }
 
     /// Calls after_trigger for the pending triggers of lane i, in order of their index, and for those that their
     /// actions bring about. Returns whether there were any. Called at several places.
     MYRIAD_LARGE_FUNCTION bool act_on_triggers_of(int i) {
-        constexpr int triggers = n_trigger<Model>;
+        constexpr auto triggers = n_trigger<Model>;
         auto& pending = events.pending_triggers(i);
         bool acted = false;
         [[maybe_unused]] int last = -1;  // the function whose crossing the last action was at
@@ -182,8 +182,8 @@ private:
                 pending.clear();
                 break;
             }
-            int next = triggers - 1;
-            for (int j = triggers - 2; j >= 0; --j) next = pending[j] ? j : next;
+            int next = MYRIAD_LENGTH(triggers) - 1;
+            for (int j = next - 1; j >= 0; --j) next = pending[j] ? j : next;
             pending.set(next, false);
             act_and_look(i, [&](auto& lane) MYRIAD_LAMBDA {
                 if constexpr (triggers_know_their_function<Model>) {
@@ -238,10 +238,10 @@ private:
                 s.end_lane(i, status::stopped_by_event);
             if (events.count_action(j, i) >= args.accumulation_limit) s.end_lane(i, status::event_accumulation);
         };
-        if constexpr (m <= 32) {
+        if constexpr (m <= MYRIAD_MOST_COPIES) {
             static_for<0, m>(act);
         } else {  // copies of so many actions would take minutes to compile
-            for (int j = 0; j < m; ++j) act(j);
+            for (int j = 0; j < MYRIAD_LENGTH(m); ++j) act(j);
         }
     }
 
@@ -334,7 +334,7 @@ private:
         const mask bad = lanes & !team_for<Model>::all(all_finite(s.data.y));
         if (MYRIAD_UNLIKELY(any(bad))) {
             MYRIAD_UNROLL
-            for (int c = 0; c < n; ++c) s.data.y[c] = select(bad, before[c], s.data.y[c]);
+            for (int c = 0; c < MYRIAD_LENGTH(n); ++c) s.data.y[c] = select(bad, before[c], s.data.y[c]);
             s.end_lanes(bad, status::not_finite);
         }
     }

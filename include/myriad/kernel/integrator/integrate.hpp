@@ -25,8 +25,8 @@ template <class Model, class Method, class S>
 struct integrator {
     using R = real_of<S>;
     using mask = mask_of<S>;
-    static constexpr int n = n_state<Model>;
-    static constexpr int m = n_event<Model>;
+    static constexpr auto n = n_state<Model>;
+    static constexpr auto m = n_event<Model>;
     using watchdog_type = phase_watchdog<Model, Method, S>;
     using trial_type = trial_step<Method, S, n>;
     using stepping_type = stepping<Model, Method, S>;
@@ -123,7 +123,7 @@ struct integrator {
             if constexpr (sampler<Model, Method, S>::watches) {
                 mask acted = mask(false);
                 MYRIAD_UNROLL
-                for (int c = 0; c < n; ++c) acted = acted | differs_in_bits(s.data.y[c], before[c]);
+                for (int c = 0; c < MYRIAD_LENGTH(n); ++c) acted = acted | differs_in_bits(s.data.y[c], before[c]);
                 for_each_lane(begun & acted, [&](int i) MYRIAD_LAMBDA {
                     if (get_lane(s.data.phase, i) > 0) return;
                     sampler<Model, Method, S>{args, s, observed}.begin_again(i);

@@ -19,8 +19,8 @@ struct phase_driver {
     using R = real_of<S>;
     using arguments = kernel_arguments<Model, R>;
     using stepping_type = stepping<Model, Method, S>;
-    static constexpr int n = n_state<Model>;
-    static constexpr int m = n_event<Model>;
+    static constexpr auto n = n_state<Model>;
+    static constexpr auto m = n_event<Model>;
 
     const arguments& args;
     integration_state<Model, Method, S>& s;
@@ -112,11 +112,13 @@ private:
             [&](int c) MYRIAD_LAMBDA { set_lane(s.data.y[c], i, at(args.state, detail::whole_state<Model>(c), i)); });
         if constexpr (team_size < Model >> 1) as_part<Model>::load(args, index);
         MYRIAD_UNROLL
-        for (int c = 0; c < n_parameter<Model>; ++c) set_lane(s.data.parameter[c], i, at(args.parameter, c, i));
+        for (int c = 0; c < MYRIAD_LENGTH(n_parameter<Model>); ++c)
+            set_lane(s.data.parameter[c], i, at(args.parameter, c, i));
         MYRIAD_UNROLL
-        for (int c = 0; c < n_accessory<Model>; ++c) set_lane(s.data.accessory[c], i, at(args.accessory, c, i));
+        for (int c = 0; c < MYRIAD_LENGTH(n_accessory<Model>); ++c)
+            set_lane(s.data.accessory[c], i, at(args.accessory, c, i));
         MYRIAD_UNROLL
-        for (int c = 0; c < n_integer_accessory<Model>; ++c)
+        for (int c = 0; c < MYRIAD_LENGTH(n_integer_accessory<Model>); ++c)
             set_lane(s.data.integer_accessory[c], i, at(args.integer_accessory, c, i));
         if constexpr (writes_time_domain<Model>) load_time_domain(i);
         stepping_type{args, s}.load(i);
@@ -137,16 +139,18 @@ private:
             [&](int c) MYRIAD_LAMBDA { at(args.state, detail::whole_state<Model>(c), i) = get_lane(s.data.y[c], i); });
         if constexpr (writes_parameters<Model>) {
             MYRIAD_UNROLL
-            for (int c = 0; c < n_parameter<Model>; ++c) at(args.parameter, c, i) = get_lane(s.data.parameter[c], i);
+            for (int c = 0; c < MYRIAD_LENGTH(n_parameter<Model>); ++c)
+                at(args.parameter, c, i) = get_lane(s.data.parameter[c], i);
         }
         if constexpr (writes_time_domain<Model>) {
             args.t_begin[index] = get_lane(s.data.t_begin, i);
             args.t_end[index] = get_lane(s.data.t_end, i);
         }
         MYRIAD_UNROLL
-        for (int c = 0; c < n_accessory<Model>; ++c) at(args.accessory, c, i) = get_lane(s.data.accessory[c], i);
+        for (int c = 0; c < MYRIAD_LENGTH(n_accessory<Model>); ++c)
+            at(args.accessory, c, i) = get_lane(s.data.accessory[c], i);
         MYRIAD_UNROLL
-        for (int c = 0; c < n_integer_accessory<Model>; ++c)
+        for (int c = 0; c < MYRIAD_LENGTH(n_integer_accessory<Model>); ++c)
             at(args.integer_accessory, c, i) = static_cast<std::int32_t>(get_lane(s.data.integer_accessory[c], i));
         if constexpr (team_size < Model >> 1) as_part<Model>::store(args, index);
         stepping_type{args, s}.store(i);
@@ -160,7 +164,9 @@ private:
         const auto located = static_cast<std::int64_t>(get_lane(s.located, i));
         args.accepted[index] += trials - rejected - located;
         if constexpr (is_adaptive<Method>) args.rejected[index] += rejected;
-        if constexpr (m > 0) args.located[index] += located;
+        if constexpr (m > 0) {
+            if (MYRIAD_LENGTH(m) > 0) args.located[index] += located;
+        }
         args.evaluations[index] +=
             trials * s.slopes.evaluations_per_trial + static_cast<std::int64_t>(get_lane(s.extra_evaluations, i));
     }
@@ -192,7 +198,7 @@ private:
         set_lane(s.data.phase, i, phase);
         set_lane(s.data.h, i, R(0));
         MYRIAD_UNROLL
-        for (int j = 0; j < m; ++j) set_lane(s.data.event_count[j], i, 0);
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) set_lane(s.data.event_count[j], i, 0);
         stepping_type steps{args, s};
         steps.choose_step(i, phase);
         if constexpr (has_initialise<Model>) {
@@ -281,7 +287,8 @@ private:
             set_lanes(s.data.y, i, before);
             set_lane(s.data.h_next, i, h_next);
             s.ending[i] = status::not_finite;
-        } else if (!team_for<Model>::all(same_values(before, after, n - n_tangent<Model>))) {
+        } else if (!team_for<Model>::all(
+                       same_values(before, after, MYRIAD_LENGTH(n) - MYRIAD_LENGTH(n_tangent<Model>)))) {
             if constexpr (m > 0) events.reset(i);
         }
         return wanted;
@@ -327,11 +334,11 @@ private:
         });
         if constexpr (team_size < Model >> 1) as_part<Model>::record(args, to);
         MYRIAD_UNROLL
-        for (int c = 0; c < n_accessory<Model>; ++c)
+        for (int c = 0; c < MYRIAD_LENGTH(n_accessory<Model>); ++c)
             if (args.accessory_column[c] >= 0)
                 to(r.values, args.accessory_column[c]) = get_lane(s.data.accessory[c], i);
         MYRIAD_UNROLL
-        for (int c = 0; c < n_integer_accessory<Model>; ++c)
+        for (int c = 0; c < MYRIAD_LENGTH(n_integer_accessory<Model>); ++c)
             if (args.integer_accessory_column[c] >= 0)
                 to(r.integers, args.integer_accessory_column[c]) =
                     static_cast<std::int32_t>(get_lane(s.data.integer_accessory[c], i));

@@ -12,17 +12,17 @@
 namespace myriad::detail {
 
 // Counts: the last enumerator of each of the model's enumerations, or zero.
-#define MYRIAD_MODEL_COUNT(count)                   \
-    template <class Model>                          \
-    constexpr int count##_of() {                    \
-        if constexpr (requires { Model::count; }) { \
-            return static_cast<int>(Model::count);  \
-        } else {                                    \
-            return 0;                               \
-        }                                           \
-    }                                               \
-    template <class Model>                          \
-    inline constexpr int count = count##_of<Model>();
+#define MYRIAD_MODEL_COUNT(count)                     \
+    template <class Model>                            \
+    constexpr extent count##_of() {                   \
+        if constexpr (requires { Model::count; }) {   \
+            return static_cast<extent>(Model::count); \
+        } else {                                      \
+            return 0;                                 \
+        }                                             \
+    }                                                 \
+    template <class Model>                            \
+    inline constexpr extent count = count##_of<Model>();
 #define MYRIAD_COUNT_OF_KIND(kind, ...) MYRIAD_MODEL_COUNT(n_##kind)
 MYRIAD_ENUMERATED_KINDS(MYRIAD_COUNT_OF_KIND)
 #undef MYRIAD_COUNT_OF_KIND
@@ -41,7 +41,7 @@ MYRIAD_MODEL_COUNT(n_unit)
 #undef MYRIAD_MODEL_COUNT
 /// Number of states, the first ones, whose errors choose the steps.
 template <class Model>
-inline constexpr int n_controlled = n_state<Model> - n_uncontrolled<Model>;
+inline constexpr extent n_controlled = n_state<Model> - n_uncontrolled<Model>;
 
 // Enumerations: `enum state { ..., n_state };`, or an unnamed one, recognised by its count. enumerates_<kind>: whether
 // E is the model's enumeration of such components. counts_<kind>: false if the model has the enumeration but not the

@@ -12,7 +12,7 @@ namespace myriad::inline MYRIAD_TARGET {
 /// `positive[j]`: whether event function j is positive. At its event it is on the side to which it goes, however
 /// closely it was located; at the start of the first phase, and where an action put it, zero counts as positive, until
 /// nothing else is to be done at that instant. Then it is on the side to which it goes.
-template <int events>
+template <detail::extent events>
 class event_signs {
 public:
     /// Made by the library.

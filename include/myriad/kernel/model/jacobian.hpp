@@ -17,16 +17,16 @@ MYRIAD_FUNCTION vec<S, n_state<Model>> directional_derivative(const Dual& t, con
     const auto f = Model::template rhs<Dual>(t, y, p);
     vec<S, n_state<Model>> out;
     MYRIAD_UNROLL_UP_TO(128, 128)
-    for (int c = 0; c < n_state<Model>; ++c) out[c] = f[c].derivative;
+    for (int c = 0; c < MYRIAD_LENGTH(n_state<Model>); ++c) out[c] = f[c].derivative;
     return out;
 }
 
 /// y as constants.
-template <class Dual, class S, int n>
+template <class Dual, class S, extent n>
 MYRIAD_FUNCTION vec<Dual, n> constants(const vec<S, n>& y) {
     vec<Dual, n> out;
     MYRIAD_UNROLL_UP_TO(128, 128)
-    for (int c = 0; c < n; ++c) out[c] = Dual(y[c]);
+    for (int c = 0; c < MYRIAD_LENGTH(n); ++c) out[c] = Dual(y[c]);
     return out;
 }
 
@@ -42,7 +42,7 @@ MYRIAD_FUNCTION vec<S, n_state<Model>> time_derivative(const S& t, const vec<S, 
 template <class Model, class S>
 MYRIAD_FUNCTION void dual_jacobian(const S& t, const vec<S, n_state<Model>>& y, const inputs<Model, S>& p,
                                    matrix<S, n_state<Model>>& jacobian) {
-    constexpr int n = n_state<Model>;
+    constexpr auto n = n_state<Model>;
     matrix_loop<S, n>::all([&](auto j) MYRIAD_LAMBDA {
         auto seeded = constants<dual<S>>(y);
         seeded[j].derivative = S(real_of<S>(1));

@@ -162,22 +162,22 @@ struct lane {
 namespace myriad::detail::inline MYRIAD_TARGET {
 
 /// Copies lane i out of a vector of packs; `set_lanes` writes it back.
-template <class R, class S, int n>
+template <class R, class S, extent n>
 MYRIAD_FUNCTION vec<R, n> get_lanes(const vec<S, n>& v, int i) {
     vec<R, n> out;
     MYRIAD_UNROLL
-    for (int c = 0; c < n; ++c) out[c] = static_cast<R>(get_lane(v[c], i));
+    for (int c = 0; c < MYRIAD_LENGTH(n); ++c) out[c] = static_cast<R>(get_lane(v[c], i));
     return out;
 }
-template <class R, class S, int n>
+template <class R, class S, extent n>
 MYRIAD_FUNCTION void set_lanes(vec<S, n>& v, int i, const vec<R, n>& lane) {
     MYRIAD_UNROLL
-    for (int c = 0; c < n; ++c) set_lane(v[c], i, lane[c]);
+    for (int c = 0; c < MYRIAD_LENGTH(n); ++c) set_lane(v[c], i, lane[c]);
 }
 
 /// Whether the first components of two states are equal (a NaN equals nothing).
-template <class R, int n>
-MYRIAD_FUNCTION bool same_values(const vec<R, n>& a, const vec<R, n>& b, int count = n) {
+template <class R, extent n>
+MYRIAD_FUNCTION bool same_values(const vec<R, n>& a, const vec<R, n>& b, int count = MYRIAD_LENGTH(n)) {
     bool same = true;
     MYRIAD_UNROLL
     for (int c = 0; c < count; ++c) same = same && a[c] == b[c];
@@ -216,7 +216,7 @@ template <class R, class S>
 MYRIAD_FUNCTION void copy_lane(R& to, const S& from, int i) {
     to = static_cast<R>(get_lane(from, i));
 }
-template <class R, class S, int n>
+template <class R, class S, extent n>
 MYRIAD_FUNCTION void copy_lane(vec<R, n>& to, const vec<S, n>& from, int i) {
     to = get_lanes<R>(from, i);
 }
@@ -228,7 +228,7 @@ template <class S, class R>
 MYRIAD_FUNCTION void put_lane(S& to, int i, const R& from) {
     set_lane(to, i, from);
 }
-template <class S, class R, int n>
+template <class S, class R, extent n>
 MYRIAD_FUNCTION void put_lane(vec<S, n>& to, int i, const vec<R, n>& from) {
     set_lanes(to, i, from);
 }

@@ -49,11 +49,11 @@ template <class Model>
 inline constexpr bool mass_entries_fit = mass_entries_are_of_states<Model>();
 
 /// An entry's place, and its value in the kernel's precision, as constants.
-template <class Model, int m>
+template <class Model, extent m>
 inline constexpr int mass_row = Model::mass_matrix[m].row;
-template <class Model, int m>
+template <class Model, extent m>
 inline constexpr int mass_column = Model::mass_matrix[m].column;
-template <class Model, int m, class R>
+template <class Model, extent m, class R>
 inline constexpr R mass_value = static_cast<R>(Model::mass_matrix[m].value);
 
 }  // namespace myriad::detail

@@ -13,7 +13,7 @@ struct sampler {
     using R = real_of<S>;
     using mask = mask_of<S>;
     using step_type = accepted_step<Model, Method, S>;
-    static constexpr int n = n_state<Model>;
+    static constexpr auto n = n_state<Model>;
     static constexpr bool watches = samples_trajectory<Method>;
     static constexpr bool changes_inputs = false;
 
@@ -130,7 +130,7 @@ private:
         } else {
             vec<S, n> y = detail::interpolate(step, theta);
             MYRIAD_UNROLL
-            for (int c = 0; c < n; ++c) y[c] = select(at_end, step.trial.y[c], y[c]);
+            for (int c = 0; c < MYRIAD_LENGTH(n); ++c) y[c] = select(at_end, step.trial.y[c], y[c]);
             return [y](int c) MYRIAD_LAMBDA { return y[c]; };
         }
     }
@@ -192,7 +192,7 @@ private:
         std::int64_t apart = args.size * args.sample.capacity;
         MYRIAD_OPTIMISATION_BARRIER(apart);  // else registers hold each column's place throughout the loop over steps
         MYRIAD_UNROLL
-        for (int c = 0; c < n; ++c) {
+        for (int c = 0; c < MYRIAD_LENGTH(n); ++c) {
             const int column = args.sample_column[detail::whole_state<Model>(c)];
             if (column >= 0) args.sample.values[column * apart + cell] = y(c);
         }

@@ -11,7 +11,7 @@
 namespace myriad::detail::inline MYRIAD_TARGET {
 
 /// A committed step as the summaries see it: its interpolant, with the term that raises a cubic to order four.
-template <class Method, class S, int n>
+template <class Method, class S, extent n>
 struct observed_step {
     // The cubic Hermite polynomial is of lower order than the steps of a method of order five. One more evaluation
     // raises it: the state at one point gives a slope there that is accurate to order four.
@@ -38,8 +38,8 @@ template <class Model, class Method, class S>
 struct summariser {
     using R = real_of<S>;
     using mask = mask_of<S>;
-    static constexpr int n = n_state<Model>;
-    static constexpr int m = n_observed<Model>;
+    static constexpr auto n = n_state<Model>;
+    static constexpr auto m = n_observed<Model>;
     static constexpr bool watches = has_summaries<Model>;
     static constexpr bool changes_inputs = sees_summaries<Model>;
     static constexpr bool integrates = summarises_any<Model, over_phase::integral>;

@@ -17,11 +17,11 @@ template <class S>
 using count_of = std::conditional_t<lanes_of<S> == 1, std::int32_t, S>;
 
 /// Whether every component is finite, lane by lane.
-template <class S, int n>
+template <class S, extent n>
 MYRIAD_FUNCTION mask_of<S> all_finite(const vec<S, n>& y) {
     mask_of<S> finite = is_finite(y[0]);
     MYRIAD_UNROLL_UP_TO(32, 128)
-    for (int c = 1; c < n; ++c) finite = finite & is_finite(y[c]);
+    for (int c = 1; c < MYRIAD_LENGTH(n); ++c) finite = finite & is_finite(y[c]);
     return finite;
 }
 

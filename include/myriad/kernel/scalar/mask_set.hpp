@@ -15,21 +15,21 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 constexpr int words_for(int size) { return size > 0 ? (size + 31) / 32 : 1; }
 
 /// `size` masks of kind M. Operators work on all of them at once.
-template <class M, int size>
+template <class M, extent size>
 class mask_set {
 public:
     /// In every lane the bits of these words.
     static MYRIAD_FUNCTION mask_set from_bits(const std::uint32_t* words) {
         mask_set made;
         MYRIAD_UNROLL
-        for (int j = 0; j < size; ++j) made.masks_[j] = M(((words[j / 32] >> (j % 32)) & 1u) != 0);
+        for (int j = 0; j < MYRIAD_LENGTH(size); ++j) made.masks_[j] = M(((words[j / 32] >> (j % 32)) & 1u) != 0);
         return made;
     }
     /// All masks in these lanes.
     static MYRIAD_FUNCTION mask_set all_in(const M& lanes) {
         mask_set made;
         MYRIAD_UNROLL
-        for (int j = 0; j < size; ++j) made.masks_[j] = lanes;
+        for (int j = 0; j < MYRIAD_LENGTH(size); ++j) made.masks_[j] = lanes;
         return made;
     }
     MYRIAD_FUNCTION const M& operator[](int j) const { return masks_[j]; }
@@ -41,13 +41,13 @@ public:
     }
     MYRIAD_FUNCTION void clear() {
         MYRIAD_UNROLL
-        for (int j = 0; j < size; ++j) masks_[j] = M(false);
+        for (int j = 0; j < MYRIAD_LENGTH(size); ++j) masks_[j] = M(false);
     }
     /// The lanes in which any of the masks holds.
     MYRIAD_FUNCTION M any_of() const {
         M joined = masks_[0];
         MYRIAD_UNROLL
-        for (int j = 1; j < size; ++j) joined = joined | masks_[j];
+        for (int j = 1; j < MYRIAD_LENGTH(size); ++j) joined = joined | masks_[j];
         return joined;
     }
     /// The lanes in which all of the masks hold.
@@ -75,12 +75,12 @@ public:
         mask_set<bool, size> made;
         made.clear();
         MYRIAD_UNROLL
-        for (int j = 0; j < size; ++j) made.set(j, get(j, lane));
+        for (int j = 0; j < MYRIAD_LENGTH(size); ++j) made.set(j, get(j, lane));
         return made;
     }
     MYRIAD_FUNCTION void set_of_lane(int lane, const mask_set<bool, size>& values) {
         MYRIAD_UNROLL
-        for (int j = 0; j < size; ++j) set(j, lane, values[j]);
+        for (int j = 0; j < MYRIAD_LENGTH(size); ++j) set(j, lane, values[j]);
     }
 
 private:
@@ -88,13 +88,13 @@ private:
     static MYRIAD_FUNCTION mask_set combined(const mask_set& a, const mask_set& b, Combine&& combine) {
         mask_set made;
         MYRIAD_UNROLL
-        for (int j = 0; j < size; ++j) made.masks_[j] = combine(a.masks_[j], b.masks_[j]);
+        for (int j = 0; j < MYRIAD_LENGTH(size); ++j) made.masks_[j] = combine(a.masks_[j], b.masks_[j]);
         return made;
     }
     vec<M, size> masks_;
 };
 
-template <int size>
+template <extent size>
 class mask_set<bool, size> {
 public:
     static MYRIAD_FUNCTION mask_set from_bits(const std::uint32_t* words) {
@@ -174,10 +174,11 @@ public:
     MYRIAD_FUNCTION void set_of_lane(int, const mask_set& values) { *this = values; }
 
 private:
-    static constexpr int count = words_for(size);
+    static constexpr int count = words_for(MYRIAD_CAPACITY(size));
     /// The bits of word k that stand for masks.
     static MYRIAD_FUNCTION std::uint32_t used(int k) {
-        const int bits = size - 32 * k;
+        const int bits = MYRIAD_LENGTH(size) - 32 * k;
+        if (bits < 0) return 0;  // only where the length is less than the capacity
         return bits >= 32 ? ~std::uint32_t(0) : (std::uint32_t(1) << bits) - 1;
     }
     std::uint32_t words_[count];

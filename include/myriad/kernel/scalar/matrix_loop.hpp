@@ -10,7 +10,7 @@
 namespace myriad::inline MYRIAD_TARGET {
 
 /// `matrix[i][j]` is row i, column j.
-template <class S, int n>
+template <class S, auto n>  // not an extent, by which g++ 12 crashes
 using matrix = vec<vec<S, n>, n>;
 
 }  // namespace myriad::inline MYRIAD_TARGET
@@ -25,7 +25,7 @@ template <class S>
 inline constexpr int largest_matrix_in_registers = lanes_of<S> == 1 ? 6 : 3;
 
 /// A loop over 0 <= i < n that is written out.
-template <int n>
+template <extent n>
 struct unrolled_loop {
     template <class F>
     static MYRIAD_FUNCTION void all(F&& f) {
@@ -35,7 +35,7 @@ struct unrolled_loop {
 
 /// Loops over 0 <= i < n, for numbers of kind S. `f` gets the index as a `constant_index` if the loop is unrolled, else
 /// as an int.
-template <class S, int n>
+template <class S, extent n>
 struct matrix_loop {
     static constexpr bool unrolled = n <= largest_matrix_in_registers<S>;
 
@@ -45,7 +45,7 @@ struct matrix_loop {
             static_for<0, n>(f);
         } else {
             MYRIAD_ROLLED
-            for (int i = 0; i < n; ++i) f(i);
+            for (int i = 0; i < MYRIAD_LENGTH(n); ++i) f(i);
         }
     }
     /// From n - 1 down to 0.
@@ -55,7 +55,7 @@ struct matrix_loop {
             static_for<0, n>([&](auto i) MYRIAD_LAMBDA { f(constant_index<n - 1 - decltype(i)::value>{}); });
         } else {
             MYRIAD_ROLLED
-            for (int i = n - 1; i >= 0; --i) f(i);
+            for (int i = MYRIAD_LENGTH(n) - 1; i >= 0; --i) f(i);
         }
     }
     /// k <= i < n
@@ -65,7 +65,7 @@ struct matrix_loop {
             static_for<K::value, n>(f);
         } else {
             MYRIAD_UNROLL_BY(4)
-            for (int i = k; i < n; ++i) f(i);
+            for (int i = k; i < MYRIAD_LENGTH(n); ++i) f(i);
         }
     }
     /// k < i < n
@@ -75,7 +75,7 @@ struct matrix_loop {
             static_for<K::value + 1, n>(f);
         } else {
             MYRIAD_UNROLL_BY(4)
-            for (int i = k + 1; i < n; ++i) f(i);
+            for (int i = k + 1; i < MYRIAD_LENGTH(n); ++i) f(i);
         }
     }
     /// 0 <= i < k

@@ -36,7 +36,7 @@ MYRIAD_FUNCTION void ensure_interpolant(integration_state<Model, Method, S>& s,
 template <class Model, class Method, class S>
 struct accepted_step {
     using mask = mask_of<S>;
-    static constexpr int n = n_state<Model>;
+    static constexpr auto n = n_state<Model>;
 
     integration_state<Model, Method, S>& s;
     const trial_step<Method, S, n>& trial;

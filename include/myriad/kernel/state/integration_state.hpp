@@ -36,7 +36,7 @@ struct integration_state {
     // A single instance counts iterations from the start of each phase, in one register, up to zero: so that the check
     // for the last one needs no other number.
     using iteration_number = std::conditional_t<lanes == 1, std::int32_t, std::int64_t>;
-    static constexpr int n = n_state<Model>;
+    static constexpr auto n = n_state<Model>;
 
     lane_data<Model, S> data;
     mask active;  // lanes that hold an instance

@@ -172,7 +172,8 @@ struct kernel_arguments : argument_head<R>, argument_arrays<Model, R> {};
 template <class Model, class R>
 MYRIAD_FUNCTION auto most_actions(const kernel_arguments<Model, R>& args) {
     if constexpr (has_triggers<Model>) {
-        return std::int64_t(args.accumulation_limit) * n_trigger<Model>;
+        const int triggers = MYRIAD_LENGTH(n_trigger<Model>);  // none only of a model that has its numbers at run time
+        return std::int64_t(args.accumulation_limit) * (triggers > 0 ? triggers : 1);
     } else {
         return args.accumulation_limit;
     }

@@ -20,7 +20,7 @@ public:
     using R = real_of<S>;
     using mask = mask_of<S>;
     using count = count_of<S>;
-    static constexpr int n = n_state<Model>;
+    static constexpr auto n = n_state<Model>;
     using state = vec<S, n>;
     using data = lane_data<Model, S>;
 

@@ -18,18 +18,18 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 /// - Explicit methods, CPU: from 17 states on, steps lie in memory anyway, and written out they outgrow the instruction
 ///   cache. Lorenz 96 with 32, 64 and 128 states by tsitouras_5 took 2.1, 2.2 and 2.5 ns per state and step written
 ///   out, and 1.3, 1.4 and 2.0 as loops (Zen 5, AVX-512, g++ 12).
-template <class Method, int first, int end, class Use>
+template <class Method, int first, extent end, class Use>
 MYRIAD_FUNCTION void each_component(Use&& use) {
     if constexpr (rosenbrock_method<Method>) {
         MYRIAD_UNROLL_UP_TO(128, 128)
-        for (int c = first; c < end; ++c) use(c);
+        for (int c = first; c < MYRIAD_LENGTH(end); ++c) use(c);
     } else {
         MYRIAD_UNROLL_UP_TO(54, 16)
-        for (int c = first; c < end; ++c) use(c);
+        for (int c = first; c < MYRIAD_LENGTH(end); ++c) use(c);
     }
 }
 /// The same for the first n.
-template <class Method, int n, class Use>
+template <class Method, extent n, class Use>
 MYRIAD_FUNCTION void each_component(Use&& use) {
     detail::each_component<Method, 0, n>(use);
 }

@@ -50,7 +50,7 @@ inline constexpr bool interpolates_between_slopes =
     !rosenbrock_method<Method> && (Method::first_same_as_last || interpolates_with_slope_end<Method>);
 
 /// A trial step with the data that interpolants and event functions need.
-template <class Method, class S, int n>
+template <class Method, class S, extent n>
 struct step_data {
     S t;          // start
     S h;          // length
@@ -73,7 +73,7 @@ struct step_data {
 };
 
 /// Evaluates the interpolant's own stages. The slope at the end of the step must be set.
-template <class Model, class Method, class S, int n>
+template <class Model, class Method, class S, extent n>
 MYRIAD_FUNCTION void complete_interpolant(step_data<Method, S, n>& step, const inputs<Model, S>& p) {
     using R = real_of<S>;
     static_for<0, extra_stages<Method>>([&](auto i) MYRIAD_LAMBDA {
@@ -84,7 +84,8 @@ MYRIAD_FUNCTION void complete_interpolant(step_data<Method, S, n>& step, const i
             if constexpr (extra_weight<Method, own, stage, R> != R(0)) {
                 const S scale = step.h * S(extra_weight<Method, own, stage, R>);
                 MYRIAD_UNROLL
-                for (int c = 0; c < n; ++c) argument[c] = fma(scale, step.template slope<stage>()[c], argument[c]);
+                for (int c = 0; c < MYRIAD_LENGTH(n); ++c)
+                    argument[c] = fma(scale, step.template slope<stage>()[c], argument[c]);
             }
         });
         step.extra[own] = detail::evaluate_rhs<Model>(fma(S(extra_node<Method, own, R>), step.h, step.t), argument, p);
@@ -93,7 +94,7 @@ MYRIAD_FUNCTION void complete_interpolant(step_data<Method, S, n>& step, const i
 
 /// The cubic with values y0, y1 and slopes k0, k1 at the ends of a step of length h, at fraction theta; for a dual
 /// theta, with its derivative. Hairer, Norsett, Wanner, Solving ODE I, II.6, eq. (6.7).
-template <class S, int n, class T>
+template <class S, extent n, class T>
 MYRIAD_FUNCTION vec<T, n> hermite_interpolation(const vec<S, n>& y0, const vec<S, n>& y1, const vec<S, n>& k0,
                                                 const vec<S, n>& k1, const S& h, const T& theta) {
     using R = real_of<S>;
@@ -101,7 +102,7 @@ MYRIAD_FUNCTION vec<T, n> hermite_interpolation(const vec<S, n>& y0, const vec<S
     const T theta1 = theta - S(R(1));
     const T middle = S(R(1)) - theta - theta;
     MYRIAD_UNROLL
-    for (int c = 0; c < n; ++c) {
+    for (int c = 0; c < MYRIAD_LENGTH(n); ++c) {
         const S difference = y1[c] - y0[c];
         const T slopes = fma(theta1, k0[c], theta * k1[c]);
         const T bend = fma(h, slopes, middle * difference);
@@ -111,7 +112,7 @@ MYRIAD_FUNCTION vec<T, n> hermite_interpolation(const vec<S, n>& y0, const vec<S
 }
 
 /// State at t + theta h, 0 <= theta <= 1; for a dual theta, with its derivative.
-template <class Method, class S, int n, class T>
+template <class Method, class S, extent n, class T>
 MYRIAD_FUNCTION vec<T, n> interpolate(const step_data<Method, S, n>& step, const T& theta) {
     using R = real_of<S>;
     vec<T, n> out;
@@ -133,7 +134,7 @@ MYRIAD_FUNCTION vec<T, n> interpolate(const step_data<Method, S, n>& step, const
             }
         });
         MYRIAD_UNROLL
-        for (int c = 0; c < n; ++c) {
+        for (int c = 0; c < MYRIAD_LENGTH(n); ++c) {
             T increment = weight[0] * step.trial.k[0][c];
             static_for<1, stages>([&](auto i) MYRIAD_LAMBDA {
                 constexpr int stage = decltype(i)::value;

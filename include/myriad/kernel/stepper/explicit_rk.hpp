@@ -59,7 +59,7 @@ constexpr bool check_tableau() {
 }
 
 /// The result of a trial step: the slopes of its stages (the first is the slope at its start) and the new state.
-template <class Method, class S, int n>
+template <class Method, class S, extent n>
 struct trial_step {
     static_assert(check_tableau<Method>());
     vec<vec<S, n>, Method::stages> k;
@@ -142,7 +142,7 @@ MYRIAD_FUNCTION void add_weighted(S& sum, const S& k) {
 
 /// sum_j w_j k_j / w_first for one component. Dividing the weights by the first non-zero one (at compile time) saves
 /// one operation per component compared with h * sum: the caller multiplies once by h * w_first.
-template <class Method, int row, class S, int n>
+template <class Method, int row, class S, extent n>
 MYRIAD_FUNCTION S scaled_sum(const vec<vec<S, n>, Method::stages>& k, int component) {
     constexpr int first = first_stage<Method, row>;
     constexpr int end = row < Method::stages ? row : Method::stages;
@@ -153,12 +153,12 @@ MYRIAD_FUNCTION S scaled_sum(const vec<vec<S, n>, Method::stages>& k, int compon
 }
 
 /// y + h * sum_j w_j k_j with the weights of `row`: the argument of a stage, or the new state.
-template <class Method, int row, class S, int n>
+template <class Method, int row, class S, extent n>
 MYRIAD_FUNCTION vec<S, n> combine(const vec<S, n>& y, const S& h, const vec<vec<S, n>, Method::stages>& k) {
     const S scale = h * S(detail::first_operand<Method, row, real_of<S>>());
     vec<S, n> out;
     MYRIAD_UNROLL_UP_TO(64, 16)
-    for (int c = 0; c < n; ++c) out[c] = fma(scale, detail::scaled_sum<Method, row>(k, c), y[c]);
+    for (int c = 0; c < MYRIAD_LENGTH(n); ++c) out[c] = fma(scale, detail::scaled_sum<Method, row>(k, c), y[c]);
     return out;
 }
 
@@ -167,28 +167,28 @@ template <class Method, int row = row_of<Method>::error, class S>
 MYRIAD_FUNCTION S error_factor(const S& h) {
     return h * S(detail::first_operand<Method, row, real_of<S>>());
 }
-template <class Method, int row = row_of<Method>::error, class S, int n>
+template <class Method, int row = row_of<Method>::error, class S, extent n>
 MYRIAD_FUNCTION S error_sum(const trial_step<Method, S, n>& trial, int component) {
     return detail::scaled_sum<Method, row>(trial.k, component);
 }
 
 /// Whether g++ copies such vectors through memory, by string instructions.
-template <class S, int n>
+template <class S, extent n>
 inline constexpr bool is_large_in_packs = lanes_of<S> > 1 && sizeof(vec<S, n>) > 1024;
 
 /// to = from, component by component in large packs.
-template <class S, int n>
+template <class S, extent n>
 MYRIAD_FUNCTION void copy_components(vec<S, n>& to, const vec<S, n>& from) {
     if constexpr (is_large_in_packs<S, n>) {
         MYRIAD_UNROLL_UP_TO(64, 16)
-        for (int c = 0; c < n; ++c) to[c] = from[c];
+        for (int c = 0; c < MYRIAD_LENGTH(n); ++c) to[c] = from[c];
     } else {
         to = from;
     }
 }
 /// to = make(); in large packs the result is constructed in place, without a copy. xsimd's headers declare placement
 /// new, so that code for GPUs, which has no packs, needs no header for it.
-template <class S, int n, class Make>
+template <class S, extent n, class Make>
 MYRIAD_FUNCTION void put_result(vec<S, n>& to, Make&& make) {
     if constexpr (is_large_in_packs<S, n>) {
         ::new (static_cast<void*>(&to)) vec<S, n>(make());
@@ -207,11 +207,12 @@ inline constexpr bool is_unseen_stage = [] {
 }();
 /// Makes a stage's slope NaN if the slope of an unseen stage before it is not finite. Its argument is NaN already, but
 /// a model may return a finite slope for it, as select(x > 1, NaN, 1) does. Others keep every bit: -0 adds nothing.
-template <class Method, int stage, class S, int n>
+template <class Method, int stage, class S, extent n>
 MYRIAD_FUNCTION void see_stage_before(vec<vec<S, n>, Method::stages>& k) {
     if constexpr (is_unseen_stage<Method, stage - 1>) {
         MYRIAD_UNROLL_UP_TO(64, 16)
-        for (int c = 0; c < n; ++c) k[stage][c] = fma(S(-real_of<S>(0)), abs(k[stage - 1][c]), k[stage][c]);
+        for (int c = 0; c < MYRIAD_LENGTH(n); ++c)
+            k[stage][c] = fma(S(-real_of<S>(0)), abs(k[stage - 1][c]), k[stage][c]);
     }
 }
 
@@ -223,13 +224,13 @@ template <class Method, class Model, bool in_memory = false, class S>
 MYRIAD_FUNCTION void explicit_rk_step(const S& t, const S& h, const S& t1, const vec<S, n_state<Model>>& y,
                                       const inputs<Model, S>& p, trial_step<Method, S, n_state<Model>>& trial) {
     using R = real_of<S>;
-    constexpr int n = n_state<Model>;
+    constexpr auto n = n_state<Model>;
     constexpr int last = row_of<Method>::solution;
     vec<S, n> sum;
     const auto add_stage = [&](auto j) MYRIAD_LAMBDA {
         constexpr int stage = decltype(j)::value, first = first_stage<Method, last>;
         MYRIAD_UNROLL_UP_TO(64, 16)
-        for (int c = 0; c < n; ++c) {
+        for (int c = 0; c < MYRIAD_LENGTH(n); ++c) {
             if constexpr (stage == first) {
                 sum[c] = trial.k[stage][c];
             } else if constexpr (stage > first) {
@@ -242,7 +243,8 @@ MYRIAD_FUNCTION void explicit_rk_step(const S& t, const S& h, const S& t1, const
         constexpr int stage = decltype(i)::value;
         constexpr bool at_end = Method::first_same_as_last && stage == last - 1;
         const auto argument = [&]() MYRIAD_LAMBDA { return detail::combine<Method, stage>(y, h, trial.k); };
-        const auto put_slopes = [&](const S& at, const vec<S, n>& of) MYRIAD_LAMBDA {
+        // auto, as g++ 12 crashes by the type of a vector of run-time length here
+        const auto put_slopes = [&](const S& at, const auto& of) MYRIAD_LAMBDA {
             detail::put_result(trial.k[stage], [&]() MYRIAD_LAMBDA { return detail::evaluate_rhs<Model>(at, of, p); });
         };
         if constexpr (at_end) {
@@ -258,7 +260,7 @@ MYRIAD_FUNCTION void explicit_rk_step(const S& t, const S& h, const S& t1, const
     if constexpr (!Method::first_same_as_last) {
         const S scale = h * S(detail::first_operand<Method, last, R>());
         MYRIAD_UNROLL_UP_TO(64, 16)
-        for (int c = 0; c < n; ++c) trial.y[c] = fma(scale, sum[c], y[c]);
+        for (int c = 0; c < MYRIAD_LENGTH(n); ++c) trial.y[c] = fma(scale, sum[c], y[c]);
     }
 }
 

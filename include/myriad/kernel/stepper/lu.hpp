@@ -22,14 +22,14 @@ MYRIAD_FUNCTION row_number<S> row_number_of(int i) {
 /// The matrix A, replaced by its factors in `factorise`: the multipliers below the diagonal; on and above it U, with
 /// the reciprocals of the pivots on the diagonal. In step k row `pivot[k]` was exchanged with row k from column k on
 /// (multipliers stay in place, so `solve_factorised` alternates exchanges and eliminations).
-template <class S, int n>
+template <class S, extent n>
 struct lu_factors {
     matrix<S, n> a;
     vec<row_number<S>, n> pivot;
 };
 
 /// Calls `swap(i, where)` for the rows i > k that contain some lane's pivot.
-template <class S, int n, class K, class Swap>
+template <class S, extent n, class K, class Swap>
 MYRIAD_FUNCTION void exchange_rows(K k, const row_number<S>& pivot, Swap&& swap) {
     if constexpr (lanes_of<S> == 1 && !matrix_loop<S, n>::unrolled) {
         if (pivot != k) swap(pivot, true);
@@ -43,7 +43,7 @@ MYRIAD_FUNCTION void exchange_rows(K k, const row_number<S>& pivot, Swap&& swap)
 }
 
 /// Factorises `lu.a`. Returns false in lanes with a zero or non-finite pivot, whose matrix is singular.
-template <class S, int n>
+template <class S, extent n>
 MYRIAD_FUNCTION mask_of<S> factorise(lu_factors<S, n>& lu) {
     using R = real_of<S>;
     using loop = matrix_loop<S, n>;
@@ -79,7 +79,7 @@ MYRIAD_FUNCTION mask_of<S> factorise(lu_factors<S, n>& lu) {
 }
 
 /// Solves A x = b with the factors of A; x replaces b.
-template <class S, int n>
+template <class S, extent n>
 MYRIAD_FUNCTION void solve_factorised(const lu_factors<S, n>& lu, vec<S, n>& b) {
     using loop = matrix_loop<S, n>;
     const auto& a = lu.a;
@@ -98,7 +98,7 @@ MYRIAD_FUNCTION void solve_factorised(const lu_factors<S, n>& lu, vec<S, n>& b) 
 }
 
 /// Solves A^T x = b with the factors of A; x replaces b.
-template <class S, int n>
+template <class S, extent n>
 MYRIAD_FUNCTION void solve_transposed(const lu_factors<S, n>& lu, vec<S, n>& b) {
     using loop = matrix_loop<S, n>;
     const auto& a = lu.a;

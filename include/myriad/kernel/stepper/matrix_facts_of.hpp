@@ -14,7 +14,7 @@ template <class Model, class Method, class R>
 constexpr matrix_facts find_matrix_facts() {
     // As the concept of Rosenbrock methods, whose header has kernels.
     if constexpr (requires { Method::tableau().coupling; }) {
-        constexpr int n = n_state<Model>;
+        constexpr auto n = n_state<Model>;
         constexpr bool known = origin_of_pattern<Model>() != pattern_origin::none;
         int evaluations = 0;
         if constexpr (!gives_jacobian<Model>) {

@@ -18,7 +18,7 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 
 /// The results of a trial step: the slope at its start (and at its end, if the last stage computes it), the stages u,
 /// the new state, and the lanes whose matrix was singular, where everything else is invalid.
-template <class Method, class S, int n>
+template <class Method, class S, extent n>
 requires rosenbrock_method<Method>
 struct trial_step<Method, S, n> {
     static_assert(Method::embedded_order > 0, "a lane with a singular matrix needs a method that can shorten its step");
@@ -141,7 +141,7 @@ inline constexpr int first_weighted_stage = [] {
 }();
 
 /// sum + sum_j w_j u_j for one component, j from `begin` to `end`, without multiplications by zero and one.
-template <class Method, rosenbrock_row kind, int row, int begin, int end, class T, class S, int n>
+template <class Method, rosenbrock_row kind, int row, int begin, int end, class T, class S, extent n>
 MYRIAD_FUNCTION T add_stages(T sum, const vec<vec<S, n>, Method::stages>& u, int component) {
     using R = real_of<S>;
     static_for<begin, end>([&](auto j) MYRIAD_LAMBDA {
@@ -156,7 +156,7 @@ MYRIAD_FUNCTION T add_stages(T sum, const vec<vec<S, n>, Method::stages>& u, int
 }
 
 /// sum_j w_j u_j for one component, j from 0 to `end`.
-template <class Method, rosenbrock_row kind, int row, int end, class S, int n>
+template <class Method, rosenbrock_row kind, int row, int end, class S, extent n>
 MYRIAD_FUNCTION S sum_stages(const vec<vec<S, n>, Method::stages>& u, int component) {
     using R = real_of<S>;
     constexpr int first = first_weighted_stage<Method, kind, row>;
@@ -166,7 +166,7 @@ MYRIAD_FUNCTION S sum_stages(const vec<vec<S, n>, Method::stages>& u, int compon
 }
 
 /// The error estimate of one component: a sum, and its factor.
-template <rosenbrock_method Method, int row = row_of<Method>::error, class S, int n>
+template <rosenbrock_method Method, int row = row_of<Method>::error, class S, extent n>
 MYRIAD_FUNCTION S error_sum(const trial_step<Method, S, n>& trial, int component) {
     return detail::sum_stages<Method, rosenbrock_row::error, 0, Method::stages>(trial.u, component);
 }
@@ -227,9 +227,24 @@ MYRIAD_FUNCTION mask_of<S> factorise_stage_matrix(const S& t, const S& per_h, co
     });
     return factorise(lu, keep);
 }
+/// The same for factors whose matrix is known only when the model runs (`stage_factors_of`).
+template <class Method, class Model, class S, class Factors>
+requires requires(Factors& lu, vec<S, n_state<Model>>& b) { lu.solve(b); }
+MYRIAD_FUNCTION mask_of<S> factorise_stage_matrix(const S& t, const S& per_h, const vec<S, n_state<Model>>& y,
+                                                  const inputs<Model, S>& p, Factors& lu) {
+    return lu.template factorise<Model>(t, per_h * S(reciprocal_gamma<Method, real_of<S>>), y, p);
+}
+template <class Factors, class S, extent n>
+requires requires(const Factors& lu, vec<S, n>& b) { lu.solve(b); }
+MYRIAD_FUNCTION void solve_factorised(const Factors& lu, vec<S, n>& b) { lu.solve(b); }
+
 template <class Model, class S>
-using stage_factors =
-    std::conditional_t<factorises_sparsely<Model>, sparse_lu_factors<Model, S>, lu_factors<S, n_state<Model>>>;
+struct stage_factors_of {
+    using type =
+        std::conditional_t<factorises_sparsely<Model>, sparse_lu_factors<Model, S>, lu_factors<S, n_state<Model>>>;
+};
+template <class Model, class S>
+using stage_factors = typename stage_factors_of<Model, S>::type;
 
 /// 1 / h. Steps to an event may be as short as 1e-320. If 1 / (h gamma) or its reciprocal would leave the normal
 /// numbers, those of a slightly longer step are used, over which nothing changes either.
@@ -251,7 +266,7 @@ template <class Method, class Model, class S>
 MYRIAD_FUNCTION void rosenbrock_step(const S& t, const S& h, const S& t1, const vec<S, n_state<Model>>& y,
                                      const inputs<Model, S>& p, trial_step<Method, S, n_state<Model>>& trial) {
     using R = real_of<S>;
-    constexpr int n = n_state<Model>;
+    constexpr auto n = n_state<Model>;
     using loop = component_loop<Model, S>;
     const S per_h = detail::reciprocal_of_step(h);
     stage_factors<Model, S> lu;
@@ -305,7 +320,7 @@ MYRIAD_FUNCTION void rosenbrock_step(const S& t, const S& h, const S& t1, const 
 
 /// One component of the state at t + theta h, 0 <= theta <= 1; for a dual theta, with its derivative. `trial` has the
 /// stages u and the new state y.
-template <rosenbrock_method Method, class S, int n, class Trial, class T>
+template <rosenbrock_method Method, class S, extent n, class Trial, class T>
 MYRIAD_FUNCTION T rosenbrock_interpolation(const vec<S, n>& y, const Trial& trial, const T& theta, int component) {
     using R = real_of<S>;
     constexpr int last = dense_terms<Method> - 1;

@@ -51,7 +51,7 @@ template <class Method, class Model, class R>
 MYRIAD_FUNCTION void rosenbrock_step_in_a_loop(const R& t, const R& h, const R& t1, const vec<R, n_state<Model>>& y,
                                                const inputs<Model, R>& p,
                                                trial_step<Method, R, n_state<Model>>& trial) {
-    constexpr int n = n_state<Model>;
+    constexpr auto n = n_state<Model>;
     constexpr auto& table = rosenbrock_table_of<Method, R>;
     using loop = unrolled_loop<n>;
     const R per_h = detail::reciprocal_of_step(h);

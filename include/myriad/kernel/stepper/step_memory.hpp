@@ -150,7 +150,7 @@ requires(!rosenbrock_method<Method> && shared_step_bytes<Method, Model, S> > 0) 
 template <class Method, class Model, class R>
 class own_step {
 public:
-    static constexpr int n = n_state<Model>;
+    static constexpr auto n = n_state<Model>;
     MYRIAD_FUNCTION explicit own_step(trial_step<Method, R, n>& trial) : trial_(trial) {}
 
     MYRIAD_FUNCTION vec<vec<R, n>, Method::stages>& u() { return trial_.u; }
@@ -172,7 +172,7 @@ private:
 template <class Method, class Model, class R>
 class shared_step {
 public:
-    static constexpr int n = n_state<Model>;
+    static constexpr auto n = n_state<Model>;
     MYRIAD_FUNCTION explicit shared_step(trial_step<Method, R, n>& trial)
         : trial_(trial), memory_(step_memory_of_thread<memory, shared_step_bytes<Method, Model, R>>()) {}
 

@@ -56,7 +56,7 @@ MYRIAD_FUNCTION bool generate_instance(const instance_arrays<array_pointer, R>& 
         const auto visit_all = [&](auto& values, auto* array, int count) MYRIAD_LAMBDA {
             for (int c = 0; c < count; ++c) visit(values[c], array[c * range.size + i]);
         };
-#define MYRIAD_VISIT_KIND(kind, ...) visit_all(kind, arrays.kind, n_##kind<Model>);
+#define MYRIAD_VISIT_KIND(kind, ...) visit_all(kind, arrays.kind, MYRIAD_LENGTH(n_##kind<Model>));
         MYRIAD_INSTANCE_KINDS(MYRIAD_VISIT_KIND)
 #undef MYRIAD_VISIT_KIND
     };
