@@ -52,6 +52,9 @@ TEST_CASE("asking whether to stop calls the function now and then, and lets inst
     };
     relay r{f, 7, {}};
     CHECK(relay::ask(&r) == stop_request::none);
+    CHECK(seen.empty());
+    r.last_call -= 2 * relay::ask_every;
+    CHECK(relay::ask(&r) == stop_request::none);
     CHECK(relay::call(&r, 2));
     for (int i = 0; i < 5; ++i) CHECK(relay::ask(&r) == stop_request::none);
     CHECK(seen == std::vector<std::int64_t>{0, 2});
