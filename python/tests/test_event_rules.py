@@ -41,3 +41,19 @@ def test_an_action_that_moves_its_function_within_the_tolerance_does_not_make_it
                  start={x: heights, v: 0.0}, time=(0, 20), rtol=1e-9)
     fall = np.sqrt(2 * heights)
     assert np.all(abs(run[n] - (20 / fall + 1) / 2) < 1)
+
+
+@pytest.mark.parametrize("beyond", [4e-15, 1e-14])
+@pytest.mark.parametrize("power", [3, 5])
+def test_a_flat_function_that_is_zero_up_to_rounding_where_a_trial_ends_crosses_with_the_others(beyond, power):
+    events = [my.event(x - 1, do={n: n + 1, x: 0}), my.event((x - 1)**power, do={k: k + 1})]
+    run = solved({x: 1.0}, events, {n: 0, k: 0}, size=1, start={x: 0.0}, time=(0, 1.5), method="runge_kutta_4",
+                 step=1 + beyond)
+    assert (run[n][0], run[k][0]) == (1, 1)
+
+
+@pytest.mark.parametrize("height", [2e-10, 1e-9, 3e-9, 1e-8])
+def test_an_action_that_moves_a_state_near_a_surface_where_time_is_coarse_does_not_take_it_across(height):
+    events = [my.event(x - 1, do={v: height}), my.event(v, direction="falling", do={n: n + 1, v: 100})]
+    run = solved({x: 1.0, v: -1.0}, events, {n: 0}, size=1, start={x: 0.0, v: 5.0}, time=(1e6, 1e6 + 2))
+    assert run[n][0] == 1
