@@ -57,3 +57,16 @@ def test_an_action_that_moves_a_state_near_a_surface_where_time_is_coarse_does_n
     events = [my.event(x - 1, do={v: height}), my.event(v, direction="falling", do={n: n + 1, v: 100})]
     run = solved({x: 1.0, v: -1.0}, events, {n: 0}, size=1, start={x: 0.0, v: 5.0}, time=(1e6, 1e6 + 2))
     assert run[n][0] == 1
+
+
+@pytest.mark.parametrize("start", [0.0, -1e-310])
+def test_a_flat_function_is_located_where_times_are_denormal_numbers(start):
+    run = solved({x: 1.0}, my.event(x**3, do={n: n + 1}), {n: 0}, size=1, start={x: start}, time=(0, 1e-309))
+    assert run.status[0] in ("success", "step_underflow")
+
+
+@pytest.mark.parametrize("samples", [1, 8])
+def test_a_function_that_turns_in_a_kink_at_the_start_of_a_step_is_looked_at_once(samples):
+    run = solved({x: 1.0}, my.event(1 + my.where(x > 0, x, -x), do={n: n + 1}), {n: 0}, size=1, start={x: 0.0},
+                 time=(0, 1), sub_samples=samples)
+    assert run.status[0] == "success" and run[n][0] == 0
