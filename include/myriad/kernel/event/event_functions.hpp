@@ -133,7 +133,7 @@ MYRIAD_RARE_FUNCTION void find_first_signs(event_place<Model, R>* path) {
     MYRIAD_UNROLL
     for (int j = 0; j < MYRIAD_LENGTH(m); ++j) path->sign[j] = R(0);
     const R longest = R(1) / R(64) * (abs(path->t) + abs(path->h));
-    const R shortest = max(R(4096) * epsilon_of<R> * longest, smallest_normal_of<R>);  // zero would not grow
+    const R shortest = max(R(4096) * epsilon_of<R> * longest, R(smallest_normal_of<R>));  // zero would not grow
     path->length = copysign(max(shortest, path->first), path->h);
     MYRIAD_ROLLED
     while (abs(path->length) <= longest) {

@@ -95,7 +95,7 @@ private:
             if (!(falls > least && rises > least && side[j] * before.value > R(0))) continue;
             at->low = from, at->high = at->theta;
             MYRIAD_ROLLED
-            while (at->high - at->low > R(4) * epsilon_of<R> * max(at->high, epsilon_of<R>)) {
+            while (at->high - at->low > R(4) * epsilon_of<R> * max(at->high, R(epsilon_of<R>))) {
                 MYRIAD_OPTIMISATION_BARRIER(at);
                 find_values(&step, R(0.5) * (at->low + at->high), &at->inside);
                 const int k = at->function;
