@@ -132,11 +132,10 @@ MYRIAD_RARE_FUNCTION void find_first_signs(event_place<Model, R>* path) {
     path->here = detail::evaluate_events<Model>(path->t, path->y, path->p);
     MYRIAD_UNROLL
     for (int j = 0; j < MYRIAD_LENGTH(m); ++j) path->sign[j] = R(0);
-    const R longest = R(1) / R(64) * (abs(path->t) + abs(path->h));
-    const R shortest = max(R(4096) * epsilon_of<R> * longest, R(smallest_normal_of<R>));  // zero would not grow
-    path->length = copysign(max(shortest, path->first), path->h);
+    const R least = max(R(64) * epsilon_of<R> * (abs(path->t) + abs(path->h)), R(smallest_normal_of<R>));
+    path->length = copysign(max(least, path->first), path->h);
     MYRIAD_ROLLED
-    while (abs(path->length) <= longest) {
+    while (abs(path->length) * R(64) <= abs(path->t) + abs(path->h)) {
         MYRIAD_OPTIMISATION_BARRIER(path);  // else what it points to occupies registers throughout
         const R length = path->length;
         MYRIAD_UNROLL

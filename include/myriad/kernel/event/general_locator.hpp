@@ -159,12 +159,11 @@ private:
         flags& here = found.crosses;
         slope = heading = middle = step.g1;
         here.clear();
-        if (reached.others || !reached.all_left) {
+        if (!reached.is_plain()) {
+            found.alone = !reached.others && reached.all_left;
             detail::look_around(&found, &own, false);
             detail::find_headings_without_slope(&found);
             if (!reached.all_left) middle = step.values_at(R(0.5));
-        } else if (!reached.is_close()) {
-            slope = step.slopes1();  // that of the target alone is asked for
         }
         R approach = R(0);
         // It leaves the surface where it fired last, so that its crossing is later, however near it is to zero.
