@@ -70,3 +70,10 @@ def test_a_function_that_turns_in_a_kink_at_the_start_of_a_step_is_looked_at_onc
     run = solved({x: 1.0}, my.event(1 + my.where(x > 0, x, -x), do={n: n + 1}), {n: 0}, size=1, start={x: 0.0},
                  time=(0, 1), sub_samples=samples)
     assert run.status[0] == "success" and run[n][0] == 0
+
+
+def test_a_function_that_crosses_in_a_direction_not_asked_for_in_a_step_from_a_surface_is_then_on_its_other_side():
+    events = [my.event(x, do={k: k + 1}), my.event(x - 1, direction="falling", do={n: n + 1})]
+    run = solved({x: v, v: -1.0}, events, {n: 0, k: 0}, size=1, start={x: 0.0, v: 2.0}, time=(0, 3.8),
+                 method="runge_kutta_4", step=1.9)
+    assert (run[n][0], run[k][0]) == (1, 0)

@@ -306,6 +306,19 @@ def test_files_that_are_exchanged_are_not_read_in_silence(tmp_path):
     assert {d.variable for d in my.verify(tmp_path / "store")} == {"x_end", axis}
 
 
+def test_a_result_of_all_instances_whose_file_was_removed_is_not_read_as_a_number(tmp_path):
+    reductions = [my.reduce.mean("x_end"), my.reduce.histogram("x_end", [-2.0, 0, 2])]
+    my.study(duffing(), grid(), reduce=reductions, **call).run(tmp_path / "store")
+    for name in ("x_end_mean", "x_end_histogram", "x_end_outside"):
+        file, = (p for p in (tmp_path / "store" / name).rglob("*") if p.is_file() and p.name != "zarr.json")
+        content = file.read_bytes()
+        file.unlink()
+        for read in (lambda r: r[name], lambda r: r.to_xarray()[name].values):
+            with pytest.raises(my.Error, match=f"{name}.* is damaged .it is missing.: start the study again"):
+                read(my.open_study(tmp_path / "store"))
+        file.write_bytes(content)
+
+
 def test_a_store_says_what_computed_it(tmp_path):
     my.study(duffing(), grid(), keep=[x], **call).run(tmp_path / "store", device="cpu", chunk=10)
     record = json.loads((tmp_path / "store" / "myriad" / "chunks" / "0.json").read_text(encoding="utf-8"))

@@ -2,6 +2,8 @@
 // Headers of models as one text.
 #include "program/model_source.hpp"
 
+#include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <filesystem>
 #include <optional>
@@ -108,6 +110,29 @@ model_source read_model_source(const std::string& path) {
     joiner all(header);
     all.add(header);
     return {header.filename().string(), std::move(all.joined)};
+}
+
+std::vector<std::string> model_source::structs() const {
+    std::vector<std::string> names;
+    const auto is_of_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+    const std::string_view all = text;
+    for (const std::string_view word : {"struct", "class", "using"}) {
+        for (std::size_t at = 0; (at = all.find(word, at)) != all.npos;) {
+            const bool begins = at == 0 || !is_of_name(all[at - 1]);
+            at += word.size();
+            const std::size_t begin = std::min(all.find_first_not_of(" \t\r\n", at), all.size());
+            std::size_t end = begin;
+            while (end < all.size() && is_of_name(all[end])) ++end;
+            std::string_view rest = all.substr(end);
+            rest.remove_prefix(std::min(rest.find_first_not_of(" \t\r\n"), rest.size()));
+            // What follows tells a definition from a template's parameter, a declaration, and a word in a comment.
+            const bool defines = word == "using" ? rest.starts_with('=')
+                                                 : rest.starts_with('{') || rest.starts_with("final") ||
+                                                       (rest.starts_with(':') && !rest.starts_with("::"));
+            if (begins && begin > at && end > begin && defines) names.emplace_back(all.substr(begin, end - begin));
+        }
+    }
+    return names;
 }
 
 std::string model_source::digest() const {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace myriad::programs {
 
@@ -13,6 +14,8 @@ struct model_source {
     std::string text;  ///< with the files that it includes in quotes put in their place, and lines that say so
     /// Stands for the text, without those lines: the same wherever the files are.
     std::string digest() const;
+    /// The names of the structs that it defines, also by another name for one.
+    std::vector<std::string> structs() const;
 };
 
 /// Reads a header. Files that it includes in quotes are looked for beside the file that includes them; those that are

@@ -3,7 +3,6 @@
 #include "program/wanted_model.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <string_view>
 #include <vector>
 
@@ -30,30 +29,6 @@ const program_method* method_of(const program_model& model, std::string_view nam
 std::string method_wanted(const study_file::model_choice& wanted) {
     const bool is_dense = plain_name(wanted.method).starts_with("dense<");
     return wanted.samples && !is_dense ? "dense<" + wanted.method + '>' : wanted.method;
-}
-
-/// The names of the structs that a header defines, also by another name for one.
-std::vector<std::string> structs_of(const std::string& text) {
-    std::vector<std::string> names;
-    const auto is_of_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
-    const std::string_view all = text;
-    for (const std::string_view word : {"struct", "class", "using"}) {
-        for (std::size_t at = 0; (at = all.find(word, at)) != all.npos;) {
-            const bool begins = at == 0 || !is_of_name(all[at - 1]);
-            at += word.size();
-            const std::size_t begin = std::min(all.find_first_not_of(" \t\r\n", at), all.size());
-            std::size_t end = begin;
-            while (end < all.size() && is_of_name(all[end])) ++end;
-            std::string_view rest = all.substr(end);
-            rest.remove_prefix(std::min(rest.find_first_not_of(" \t\r\n"), rest.size()));
-            // What follows tells a definition from a template's parameter, a declaration, and a word in a comment.
-            const bool defines = word == "using" ? rest.starts_with('=')
-                                                 : rest.starts_with('{') || rest.starts_with("final") ||
-                                                       (rest.starts_with(':') && !rest.starts_with("::"));
-            if (begins && begin > at && end > begin && defines) names.emplace_back(all.substr(begin, end - begin));
-        }
-    }
-    return names;
 }
 
 }  // namespace
@@ -92,7 +67,7 @@ const program_method& find_method(const program_model& model, const study_file::
 void compile_model(const study_file::model_choice& wanted, const model_source& source, compile_permission permission,
                    bool quiet) {
     const std::string name = wanted.model.substr(0, wanted.model.find('<'));
-    const std::vector<std::string> structs = structs_of(source.text);
+    const std::vector<std::string> structs = source.structs();
     const std::string last = name.substr(name.rfind(':') == std::string::npos ? 0 : name.rfind(':') + 1);
     if (wanted.model == name && std::find(structs.begin(), structs.end(), last) == structs.end())
         throw wrong_at(wanted.model_place,

@@ -5,8 +5,10 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include <sys/stat.h>
 
@@ -104,4 +106,17 @@ TEST_CASE("a pipe, a device or a folder that is named as a header is refused, an
     here.write("includes.hpp", "#include \"pipe.hpp\"\n");
     for (const char* name : {"pipe.hpp", "folder.hpp", "/dev/zero", "includes.hpp"})
         CHECK_THROWS_WITH(here.read(name), Contains("is no regular file: give the path of a file"));
+}
+
+TEST_CASE("the structs of a header are those it defines, not parameters of templates, declarations or comments") {
+    const model_source source{"model.hpp",
+                              "template <class R, class S> struct vec;\n"
+                              "// a struct of a class: the class that moves\n"
+                              "struct duffing {\n    template <class R>\n    static R rhs(R);\n};\n"
+                              "class pendulum final : base {};\nstruct forced : duffing {};\n"
+                              "template <template <class> class T> using other = duffing;\n"
+                              "using outer::name;\nstruct outer::inner;\n"};
+    const std::vector<std::string> names = source.structs();
+    CHECK(std::set<std::string>(names.begin(), names.end()) ==
+          std::set<std::string>{"duffing", "pendulum", "forced", "other"});
 }

@@ -239,8 +239,10 @@ private:
     void add_status() {
         std::vector<std::int64_t> values;
         std::string meanings;
-        for (int s = 0; s < status_count; ++s) {
-            if (static_cast<myriad::status>(s) == myriad::status::interrupted) continue;  // such chunks are not kept
+        // Chunks with interrupted instances are not kept.
+        constexpr int last = static_cast<int>(myriad::status::interrupted);
+        static_assert(last == status_count - 1, "else the values listed would have a gap");
+        for (int s = 0; s < last; ++s) {
             values.push_back(s);
             meanings += message(s == 0 ? "" : " ", myriad::name_of(static_cast<myriad::status>(s)));
         }
