@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: MIT
-# The compiled parts of the host side, which are in the libraries and in the Python package's module. Their files are
-# compiled together, several at a time, since a file alone takes most of its time for headers.
+# The compiled parts of the host side, which are in the libraries and in the Python package's module. The files of
+# a part are compiled together, since a file alone takes most of its time for headers.
 
 # myriad_add_host_sources(<target>): what depends on no model.
 function(myriad_add_host_sources target)
     file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../src/host/*.cpp")
     target_sources(${target} PRIVATE ${sources})
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 9)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0)
     # Fast where a project has no build type, too.
-    target_compile_options(${target} PRIVATE $<$<NOT:$<CONFIG:Debug>>:-O3>)
+    target_compile_options(${target} PRIVATE $<$<NOT:$<CONFIG:Debug>>:-O2>)
 endfunction()
 
 # myriad_add_compile_sources(<target>): models compiled at run time, by the program and the Python package.
@@ -31,7 +31,7 @@ function(myriad_add_compile_sources target)
 endfunction()
 
 # myriad_add_study_sources(<target>): studies and their results on disk. What works on every value is fully optimised,
-# in an object library of its own, <target>_values, as one file; the rest as two.
+# in an object library of its own, <target>_values.
 function(myriad_add_study_sources target)
     cmake_path(SET folder NORMALIZE "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../src/study")
     file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${folder}/*.cpp")
@@ -41,13 +41,6 @@ function(myriad_add_study_sources target)
     add_library(${target}_values OBJECT ${fast})
     target_compile_options(${target}_values PRIVATE $<$<NOT:$<CONFIG:Debug>>:-O3>)
     target_sources(${target} PRIVATE ${sources})
-    target_compile_options(${target} PRIVATE $<$<NOT:$<CONFIG:Debug>>:-O1>)
+    target_compile_options(${target} PRIVATE $<$<NOT:$<CONFIG:Debug>>:-Og>)
     set_target_properties(${target} ${target}_values PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0)
-    # The library of JSON takes as long as all the rest.
-    set(with_json plan/description store/metadata store/records)
-    list(TRANSFORM with_json REPLACE "(.+)" "${folder}/\\1.cpp")
-    list(REMOVE_ITEM sources ${with_json})
-    set_source_files_properties(${with_json} PROPERTIES UNITY_GROUP with_json)
-    set_source_files_properties(${sources} PROPERTIES UNITY_GROUP other)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
 endfunction()

@@ -181,6 +181,18 @@ quietly() {
     return "$status"
 }
 
+# Seconds that the processes which this one has waited for computed, all together: sets `computed`. `times` has to be
+# called by this process itself.
+read_computed() {
+    mkdir -p build
+    times >build/times.txt
+    computed=$(awk 'NR == 2 { gsub(",", "."); split($0, t, /[ms ]+/); printf "%d", 60 * (t[1] + t[3]) + t[2] + t[4] }' \
+        build/times.txt)
+}
+
+# budget_of STEP: the most that it may compute for, in seconds; nothing if there is no budget.
+budget_of() { awk -v name="$1" '$1 == name { print $2 }' scripts/budgets.txt; }
+
 # count_tests LOG STATUS: "passed failed skipped" from ctest's output and exit status. A run that failed without saying
 # how many tests did counts as one failure, so that nothing is lost.
 count_tests() {

@@ -6,6 +6,8 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=scripts/lib.sh
 source scripts/lib.sh
+# shellcheck source=scripts/wheel.sh
+source scripts/wheel.sh
 
 wheels=build/wheels
 environment=build/python-environment
@@ -49,31 +51,17 @@ if [[ " $* " == *" --full "* || " $* " == *" --all "* ]]; then extras+=(cuda); f
 if [[ " $* " == *" --all "* ]]; then as_for_users=yes; fi
 
 require_packages g++ cmake ninja-build python3 python3-dev python3-venv libxsimd-dev nlohmann-json3-dev
-rm -rf "$wheels" "$environment"
-mkdir -p "$wheels"
-pip=("$environment/bin/python" -m pip --quiet --disable-pip-version-check --retries 1 --timeout 20)
-mapfile -t packages < <(python3 -c '
-import sys, tomllib
-extras = tomllib.load(open("pyproject.toml", "rb"))["project"]["optional-dependencies"]
-print(*(package for extra in sys.argv[1:] for package in extras[extra]), sep="\n")' "${extras[@]}")
-if ! { python3 -m venv "$environment" &&
-    "${pip[@]}" install --no-compile scikit-build-core nanobind numpy pytest-xdist "${packages[@]}"; } \
-    >"$environment.log" 2>&1; then
-    tail -n 5 "$environment.log" >&2 || true
+mapfile -t packages < <(packages_of wheel "${extras[@]}")
+if ! make_environment python3 "$environment" "$environment.log" numpy pytest-xdist "${packages[@]}"; then
     say "The Python package was NOT tested: what it is built and tested with could not be installed ($environment.log)."
     exit "$missing_status"
 fi
-started=$SECONDS
 definitions=()
 if [[ $as_for_users == no ]]; then
     definitions=(-Ccmake.define.CMAKE_CXX_FLAGS_RELEASE="-O1 -DNDEBUG -DMYRIAD_OUT_OF_LINE")
 fi
-quietly build/python-wheel.log "${pip[@]}" wheel "${definitions[@]}" --no-build-isolation --no-deps \
-    --wheel-dir "$wheels/linux" .
-PATH=$PWD/$environment/bin:$PATH quietly build/python-auditwheel.log \
-    "$environment/bin/python" -m auditwheel repair --wheel-dir "$wheels" "$wheels"/linux/*.whl
-"${pip[@]}" install --no-compile --no-deps "$wheels"/*.whl
-say "Built and installed $(basename "$wheels"/*.whl) in $(duration $((SECONDS - started)))"
+build_wheel "$environment" "$wheels" "${definitions[@]}"
+pip_of "$environment" install --no-compile --no-deps "$wheels"/*.whl
 "$environment/bin/ruff" check python
 "$environment/bin/mypy" --no-error-summary -p myriad_ode
 "$environment/bin/mypy" --no-error-summary python/examples/*.py python/examples/case_studies/*.py

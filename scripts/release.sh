@@ -55,4 +55,5 @@ mkdir -p results
 archive=results/myriad-$version.tar.gz
 git archive --format=tar.gz --prefix="myriad-$version/" --output="$archive" HEAD
 sha256sum "$archive"
-[[ $dry_run == yes ]] || say "Next: git push origin $tag, and the sum above in packaging/spack/package.py"
+[[ $dry_run == yes ]] || say "Next: git push origin $tag, the sum above in packaging/spack/package.py, and the wheels of
+scripts/wheels.sh --test on the release's page"

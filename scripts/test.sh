@@ -168,20 +168,12 @@ run_tests() {
     fi
 }
 
-# Seconds that the processes which this one has waited for computed, all together: sets `computed`. `times` has to be
-# called by this process itself.
-read_computed() {
-    times >build/times.txt
-    computed=$(awk 'NR == 2 { gsub(",", "."); split($0, t, /[ms ]+/); printf "%d", 60 * (t[1] + t[3]) + t[2] + t[4] }' \
-        build/times.txt)
-}
-
 # hold_budget STEP COMPUTED CLOCK: adds a line to the table of times. A step that computes for longer than its budget is
 # a failure. The clock is not asked, since it depends on what else the machine does.
 hold_budget() {
     local name=$1 budget
     if [[ $1 == python && $other_packages == yes ]]; then name=python_full; fi
-    budget=$(awk -v name="$name" '$1 == name { print $2 }' scripts/budgets.txt)
+    budget=$(budget_of "$name")
     if [[ $thorough == ON ]]; then budget=; fi
     times_of_steps+=("$(printf '%-9s %9d %9d %9s' "$1" "$2" "$3" "${budget:--}")")
     if [[ -n $budget ]] && (($2 > budget)); then

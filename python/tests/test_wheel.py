@@ -30,6 +30,12 @@ def test_the_tag_is_that_of_the_oldest_system_it_runs_on(files):
     assert about.decode().count("\nTag: ") == 1 and f"-{tag}\n" in about.decode()
 
 
+@pytest.mark.skipif(sys.version_info < (3, 12), reason="CPython's stable ABI has what is needed since 3.12")
+def test_it_is_for_all_versions_of_python_since_3_12(files):
+    assert "-cp312-abi3-" in path
+    assert any(name.endswith("_core.abi3.so") for name in files)
+
+
 def test_it_holds_what_models_are_compiled_with_and_nothing_else(files):
     wanted = {"xsimd/xsimd.hpp"}
     for folder, endings in (("include", (".hpp",)), ("backends/openmp", (".hpp",)),
