@@ -169,7 +169,7 @@ def first_failure(site, python, work):
     if done.returncode <= 0:
         return f"a crash, signal {-done.returncode}" if done.returncode else None
     failed = re.search(r"^(?:FAILED|ERROR) \S*?([^/\s]+::.*)$", done.stdout, re.MULTILINE)
-    if failed is None or "Error: the compiler" in done.stdout:
+    if failed is None or "the model does not compile" in done.stdout:
         sys.exit(f"The tests did not run:\n{done.stdout[-3000:]}{done.stderr[-1000:]}")
     return failed[1][:200]
 
