@@ -13,6 +13,7 @@ import numpy as np
 from .. import _core
 from ..base.errors import Error
 from ..base.statuses import first_failure, in_words, status_names
+from ..base.whole_files import replacing
 from ..models.components import name_of
 from ..results.quantities import names_of_symbol, of_component, times, unknown_quantity
 from ..sweeps.inputs import path_text
@@ -228,14 +229,8 @@ class StudyResult(Mapping):
         path = os.path.realpath(path_text(path))
         if "\\" in path:
             raise Error(f"the path {path!r} has a backslash, which netCDF takes for a slash: give another path")
-        temporary = f"{path}.part-{os.getpid()}"
-        try:
-            with dataset_of(temporary, "w") as file:
-                self._write(file, complevel)
-            os.replace(temporary, path)
-        finally:
-            if os.path.exists(temporary):
-                os.remove(temporary)
+        with replacing(path) as temporary, dataset_of(temporary, "w") as file:
+            self._write(file, complevel)
 
     def _write(self, file: Any, complevel: int) -> None:
         written = self._written()
