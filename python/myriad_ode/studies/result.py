@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from .. import _core
+from ..base import html
 from ..base.errors import Error
 from ..base.statuses import first_failure, in_words, status_names
 from ..base.whole_files import replacing
@@ -171,6 +172,12 @@ class StudyResult(Mapping):
                  f"{'' if self.complete else '; stopped before all were done'}"]
         lines += [f"note: {note}" for note in self.notes] + [f"warning: {warning}" for warning in self.warnings]
         return "\n".join(lines)
+
+    def _repr_html_(self) -> str:
+        axes = " x ".join(f"{name} ({length})" for name, length in self._axes.items())
+        rows = [("study of", f"{self.size} instances" + (f": {axes}" if axes else "")), ("store", self.folder or ""),
+                ("variables", ", ".join(self._variables)), ("coordinates", ", ".join(self._coordinates))]
+        return html.table(row for row in rows if row[1]) + html.paragraphs(str(self).splitlines())
 
     def __reduce__(self) -> tuple[Any, ...]:
         if self.folder is None:
