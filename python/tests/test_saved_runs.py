@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 import myriad_ode as my
+from myriad_ode.sweeps.gpu_inputs import DeviceInput
 
 x, v = my.states("x v")
 k, B = my.parameter("k"), my.shared("B")
@@ -148,6 +149,18 @@ def test_a_saved_run_has_datasets_pictures_and_the_models_text(tmp_path):
     assert again.to_xarray().identical(run.to_xarray())
     with pytest.raises(my.Error, match="a run that was saved has nothing on a GPU"):
         again.device["x_end"]
+
+
+def test_parameters_from_a_gpu_are_kept_and_initial_states_are_left_out(tmp_path):
+    class OnGpu:
+        __cuda_array_interface__ = {"shape": (6,), "typestr": "<f8", "data": (8, False), "version": 3}
+
+    run = solved()
+    run._inputs.update({name: DeviceInput(OnGpu(), name) for name in "kv"})  # as `solve` has them of a GPU's arrays
+    run.save(tmp_path / "run")
+    again = my.load(tmp_path / "run")
+    np.testing.assert_array_equal(again["k"], sweep.values("k"))
+    assert list(again.start) == ["x"] and list(again) == list(run)
 
 
 def test_a_file_is_read_by_numpy_without_pickles(tmp_path):
