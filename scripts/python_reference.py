@@ -22,8 +22,9 @@ PACKAGE = "python/myriad_ode"
 # The pages, and the files whose names they have. A public name of another file is an error.
 PAGES = {
     "python_solve": ("Python: solve and runs", "What a call takes and returns.",
-                     ["solving.solve", "solving.options", "results.run", "results.report", "base.statuses",
-                      "sweeps.sweep", "symbolic.axes", "results.gpu_results", "base.errors", "models.methods"]),
+                     ["solving.solve", "solving.options", "results.run", "results.load", "results.report",
+                      "base.statuses", "sweeps.sweep", "symbolic.axes", "results.gpu_results", "base.errors",
+                      "models.methods"]),
     "python_model": ("Python: models", "Equations, events and hooks, and the symbols and functions in them.",
                      ["codegen.model", "models.event", "models.trigger", "symbolic.symbols", "symbolic.functions",
                       "symbolic.expression", "symbolic.interpolate", "symbolic.table", "models.tangents",

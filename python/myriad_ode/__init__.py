@@ -27,6 +27,7 @@ from .models.tangents import *  # noqa: F403
 from .models.trigger import *  # noqa: F403
 from .models.units import *  # noqa: F403
 from .results.exponents import *  # noqa: F403
+from .results.load import load as load
 from .results.report import Interrupted as Interrupted
 from .results.run import Run as Run
 from .results.sensitivities import *  # noqa: F403
@@ -49,8 +50,8 @@ __version__ = _core.version
 
 _public = ["CppModel", "Damage", "Error", "EventChoice", "Interrupted", "Options", "PetabProblem", "RecordChoice",
            "Run", "SampleChoice", "SbmlModel", "Study", "StudyResult", "XppModel", "cache", "controls", "designs",
-           "methods", "open_study", "plots", "read_antimony", "read_petab", "read_sbml", "read_xpp", "reduce", "solve",
-           "status_names", "study", "verify",
+           "load", "methods", "open_study", "plots", "read_antimony", "read_petab", "read_sbml", "read_xpp", "reduce",
+           "solve", "status_names", "study", "verify",
            *(name for part in ("codegen.model", "gradients.batched", "inference.fitting", "inference.least_squares",
                                "models.event", "models.sensitivities", "models.tangents", "models.trigger",
                                "models.units", "results.exponents", "results.sensitivities", "sweeps.sweep",

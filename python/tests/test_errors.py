@@ -2,7 +2,6 @@
 """What bad calls of `solve` get."""
 
 import concurrent.futures
-import pickle
 
 import numpy as np
 import pytest
@@ -125,11 +124,6 @@ def test_notes_of_studies_name_pythons_options_also_where_an_executor_runs_them(
 def test_equations_are_no_model():
     with pytest.raises(my.Error, match=r"the model is a dict: make it by my.model\(...\)"):
         my.solve({"x": "v", "v": "-x"}, start={"x": 1, "v": 0}, time=(0, 1))
-
-
-def test_runs_are_not_pickled(oscillator):
-    with pytest.raises(my.Error, match="pickle run.to_xarray"):
-        pickle.dumps(my.solve(oscillator, **CALL))
 
 
 def test_shared_values_are_single_numbers(ball):

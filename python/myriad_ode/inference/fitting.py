@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
 
-from ..base import plots
+from ..base import html, plots
 from ..base.errors import Error
 from ..models.components import by_component, listed, name_of, unknown
 from ..results.report import Interrupted
@@ -179,15 +179,22 @@ class Fit(Generic[SomeObjective]):
         """A run of the best values, with its sensitivities."""
         return self.problem.run([self.best[name] for name in self.problem.names])
 
-    def __str__(self) -> str:
-        intervals = self.confidence()
+    def _reached(self) -> str:
         least, size = self.loss[self.index], 0.5 * float(self.residuals @ self.residuals)
         near = int(np.sum(self.loss <= least + 1e-3 * size + 1e-12))
-        lines = [f"loss {least:.6g}, reached by {near} of {len(self.loss)} starts"]
+        return f"loss {least:.6g}, reached by {near} of {len(self.loss)} starts"
+
+    def __str__(self) -> str:
         width = max(map(len, self.problem.names))
-        lines += [f"{name:{width}}  {self.best[name]:.6g}  [{low:.6g}, {high:.6g}]"
-                  for name, (low, high) in intervals.items()]
-        return "\n".join([*lines, *(f"note: {note}" for note in self.notes)])
+        lines = [f"{name:{width}}  {self.best[name]:.6g}  [{low:.6g}, {high:.6g}]"
+                 for name, (low, high) in self.confidence().items()]
+        return "\n".join([self._reached(), *lines, *(f"note: {note}" for note in self.notes)])
+
+    def _repr_html_(self) -> str:
+        rows = [(name, f"{self.best[name]:.6g}", f"{low:.6g}", f"{high:.6g}")
+                for name, (low, high) in self.confidence().items()]
+        return (html.paragraphs([self._reached()]) + html.columns(["", "best", "95% from", "to"], rows)
+                + html.paragraphs(f"note: {note}" for note in self.notes))
 
     __repr__ = __str__
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from ..base import plots
+from ..base import html, plots
 from ..base.errors import Error
 from .levenberg_marquardt import Descent
 from .objective import from_logarithms, logarithms
@@ -206,6 +206,12 @@ class Profile:
         lines = [f"{name:{width}}  {self._fit.best[name]:.6g}  [{low:.6g}, {high:.6g}]"
                  for name, (low, high) in self.intervals.items()]
         return "\n".join([*lines, *(f"note: {note}" for note in self.notes)])
+
+    def _repr_html_(self) -> str:
+        rows = [(name, f"{self._fit.best[name]:.6g}", f"{low:.6g}", f"{high:.6g}")
+                for name, (low, high) in self.intervals.items()]
+        return (html.columns(["", "best", "from", "to"], rows)
+                + html.paragraphs(f"note: {note}" for note in self.notes))
 
     __repr__ = __str__
 

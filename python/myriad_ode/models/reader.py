@@ -237,8 +237,11 @@ class Reader:
             one.delay, one.priority = (None if e is None else to_real(self._real(self.value(e, what), what))
                                        for e in (given.delay, given.priority))
             check(one, what)
-            one.condition = sides.of(one.condition, one.name)
+            written = one.condition
+            one.condition = sides.of(written, one.name)
             one.do, one.values = self.assignments(given.do, what, line=given.line), list(given.values)
+            one.as_given = copy.copy(one)
+            one.as_given.condition = written
             if one.values_from_trigger_time:
                 one.do = keep_values(one)
             made.append(one)

@@ -19,6 +19,7 @@ from ..symbolic.table import tables_of
 from ..symbolic.whole_and_real import generic_problem
 from .any_model import AnyModel, names_of
 from .event import Event, Stop, stop
+from .latex import model_html, model_latex
 from .mass_matrix import left_sides, read_mass_matrix
 from .reader import Reader
 from .time_jumps import TimeSwitches
@@ -63,6 +64,7 @@ class RecordedModel(AnyModel):
         self.events = reader.events(events)
         self.stops = reader.stops(stops)
         self.triggers, at_sides = reader.triggers(triggers, dict(zip(targets, self.rhs)))
+        self._written_events = len(self.events)
         self.events += at_sides
         self.queue = Queue(self.triggers, tie_seed) if needs_queue(self.triggers) or tie_seed is not None else None
         self.edges: list[Edge] = list(edges_of(self.triggers, self.queue))
@@ -136,6 +138,16 @@ class RecordedModel(AnyModel):
             stop(one.following, every=0, name=free("jump"), do=one.at_jump) for one in switches.switches])]
         self.hidden |= {target.value[1] for target in switches.at_start}
         self._collect(list(self.equations))
+
+    def latex(self) -> str:
+        r"""The model as LaTeX, an `aligned` environment for between `$$` and `$$`: equations, summaries, events, stops
+        and triggers with their actions, and hooks, as they were given. Greek letters are known by their names, and what
+        follows an underscore is a subscript. Parts that a very long equation needs several times have a line of their
+        own."""
+        return model_latex(self._as_given, self.mass_matrix)
+
+    def _repr_html_(self) -> str:
+        return model_html(self, self._as_given)
 
     @property
     def quantities_as_given(self) -> list[tuple[str, Expression]]:

@@ -41,6 +41,7 @@ class Trigger:
         self.initial_value, self.persistent, self.room, self.name = initial_value, persistent, room, name
         self.values_from_trigger_time = values_from_trigger_time
         self.values: list[Any] = []  #: what the action gets from the time of the trigger, as its `waiting_value`s
+        self.as_given: Trigger | None = None  #: as it was written; None of one that nobody has written
         self.line = users_line()
 
     def __repr__(self) -> str:

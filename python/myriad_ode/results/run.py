@@ -1,29 +1,31 @@
 # SPDX-License-Identifier: MIT
-"""The outcome of `solve`: arrays by name, statuses, and the way to xarray and pandas."""
+"""The outcome of `solve`: arrays by name, statuses, and the ways to other packages and to files."""
 
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
-from .. import _core
 from ..base import component_kinds as kinds
 from ..base.errors import Error, renamed
 from ..base.statuses import first_failure, status_names
 from ..models.components import name_of
 from ..sweeps.gpu_inputs import DeviceInput
+from ..sweeps.inputs import path_text
 from ..sweeps.sweep import Sweep
 from ..symbolic.evaluate import evaluate
 from ..symbolic.node import Node, symbols_of
 from ..symbolic.symbols import time
+from . import conversions, saved_file
 from .gpu_results import DeviceResults
 from .protocol import Quantity
 from .quantities import called, listed, names_of_symbol, of_component, quantities_of, times, unknown_quantity
 from .report import Report
 from .run_plots import Plots, html
+from .saved import parts_of, saved
 from .sensitivities import Sensitivities
 
 if TYPE_CHECKING:
@@ -31,7 +33,7 @@ if TYPE_CHECKING:
     import xarray
 
     from ..models.components import Components
-    from ..symbolic.types import Array, Component
+    from ..symbolic.types import Array, Component, Path
 
 # What was called otherwise before, and what it is called now.
 _renamed = {"t": "t_last", "sample_times": "t_sample", "steps": "accepted_steps, rejected_steps, located_steps or "
@@ -52,10 +54,11 @@ class Run(Mapping):
 
     def __init__(self, components: Components, ensemble: Any, report: Any, kernel: Any, sweep: Any,
                  inputs: dict[str, Any], domain: tuple[Any, Any], recorded: dict[str, tuple[str, int]],
-                 sampled: dict[str, int], seconds: float, record: Any, notes: Sequence[str] = ()) -> None:
+                 sampled: dict[str, int], seconds: float, record: Any, notes: Sequence[str] = (),
+                 describe: Callable[[], dict[str, Any]] = dict) -> None:
         self._components, self._ensemble, self._records = components, ensemble, report
         self._recorded, self._sampled, self._inputs, self._domain = recorded, sampled, inputs, domain
-        self._records_time = record.time
+        self._records_time, self._describe = record.time, describe
         self.sweep = sweep if isinstance(sweep, Sweep) else None
         self.report = Report(report, kernel, seconds, notes)
         self.from_phase = record.from_phase  #: number of the first recorded phase
@@ -75,6 +78,12 @@ class Run(Mapping):
     def shape(self) -> tuple[int, ...]:
         """The lengths of the sweep's axes; a sweep without axes has its size alone."""
         return tuple(self.sweep.shape) if self.sweep is not None else (self.size,)
+
+    @property
+    def description(self) -> dict[str, Any]:
+        """What was solved, as a dict: the model's name and its text in C++, method, control, precision, and the options
+        that are not the defaults, as text."""
+        return self._describe()
 
     @property
     def status(self) -> Array:
@@ -175,7 +184,7 @@ class Run(Mapping):
     def start(self) -> dict[str, Any]:
         """The initial states by name, as they were given; arrays on a GPU as objects that are there."""
         return {name: self._inputs[name] if isinstance(self._inputs[name], DeviceInput) else
-                np.asarray(self._inputs[name]) for name in self._components.states}
+                np.asarray(self._inputs[name]) for name in self._components.states if name in self._inputs}
 
     @property
     def records(self) -> dict[str, Array]:
@@ -306,77 +315,49 @@ class Run(Mapping):
     # two runs are equal if they are the same, as their arrays have no single truth value
     __eq__, __hash__ = object.__eq__, object.__hash__
 
-    def __reduce__(self) -> NoReturn:
-        raise Error("the results of a run cannot be pickled or copied: pickle run.to_xarray(), or the arrays that you "
-                    "need")
+    @classmethod
+    def _restored(cls, header: Mapping[str, Any], arrays: Mapping[str, Array]) -> Run:
+        """The run of which so much has lasted."""
+        return cls(**parts_of(header, arrays))
 
-    def _axis(self, name: str) -> str:
-        """The name of an axis of the sweep in a dataset."""
-        kind, _ = self._components.place.get(self._components.aliases.get(name, name), ("", 0))
-        called = self._called.get(self._components.aliases.get(name, name), name)
-        return f"{called}_start" if kind in kinds.recorded else called
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Run._restored, tuple(saved(self))
 
-    def _axes(self) -> tuple[list[str], tuple[int, ...]]:
-        """The dimensions of the instances and their lengths."""
-        if self.sweep is None or not self.sweep.axes:
-            return ["instance"], (self.size,)
-        return [self._axis(name) for name, _ in self.sweep.axes], tuple(self.sweep.shape)
+    def save(self, path: Path) -> None:
+        """Writes all results into one file, which `my.load(path)` reads as an equal run: values by name, statuses,
+        records, samples, derivatives, counts, the sweep, the report, and the model's text in `description`. What is on
+        a GPU is copied; the kernel and initial states that were given on a GPU are left out. The file is NumPy's .npz
+        with a header in JSON, whatever its name, and replaces one of that name when it is whole."""
+        saved_file.write(path_text(path), saved(self))
 
     def to_xarray(self) -> xarray.Dataset:
         """The results as an `xarray.Dataset` with the names of the run: along `instance`, or the axes of a grid, and
         then along `phase` or `sample`. What instances were given are coordinates."""
-        try:
-            import xarray
-        except ImportError:
-            raise Error("to_xarray needs the package xarray: `pip install xarray`") from None
-        dims, lengths = self._axes()
-        along = {} if self.sweep is None else {self._axis(name): (self._axis(axis), np.asarray(values))
-                                               for name, (axis, values) in self.sweep.coordinates.items()}
-        variables: dict[str, Any] = {}
-        coordinates: dict[str, Any] = {}
-        for name, quantity in self._quantities.items():
-            if not quantity.listed:
-                continue
-            about = {"units": quantity.unit, "long_name": quantity.long_name}
-            attributes = {key: text for key, text in about.items() if text}
-            more = [quantity.along] if quantity.along else []
-            made: tuple[Any, Any]
-            if name in along:
-                made = along[name]
-            elif quantity.of_instances:
-                array = quantity.read()
-                made = (*dims, *more), array.reshape(*lengths, *array.shape[1:])
-            else:
-                made = tuple(more), quantity.read()
-            (coordinates if quantity.is_input else variables)[name] = (*made, attributes)
-        return xarray.Dataset(variables, coordinates, {"myriad_version": _core.version})
+        return conversions.to_xarray(self)
 
     def to_pandas(self) -> pandas.DataFrame:
         """The results as a `pandas.DataFrame` with the names of the run: one row for each instance and recorded phase,
         or each instance and sample, or each instance, with the parameters as columns."""
-        try:
-            import pandas
-        except ImportError:
-            raise Error("to_pandas needs the package pandas: `pip install pandas`") from None
-        recorded = bool(self._recorded or self._records_time)
-        if recorded and self._sampled:
-            raise Error("records by phase and samples do not fit into one table: use to_xarray()")
-        along = "phase" if recorded else "sample" if self._sampled else None
-        chosen = {name: quantity.read() for name, quantity in self._quantities.items()
-                  if quantity.listed and quantity.along == along and not quantity.is_input and name != "status"}
-        if self._sampled:
-            chosen = {"t_sample": self.t_sample, **chosen}
-        columns = next(iter(chosen.values())).shape[1] if along and chosen else 1
-        table = {"instance": np.repeat(np.arange(self.size), columns)}
-        if recorded:
-            table["phase"] = np.tile(self["phase"], self.size)
-        for name in map(self._called.__getitem__, self._components.names["parameter"]):
-            if name in self._quantities:  # but what a GPU was given and hooks have changed
-                table[name] = np.repeat(np.broadcast_to(self[name], self.size), columns)
-        table.update((name, array.ravel()) for name, array in chosen.items())
-        table["status"] = pandas.Categorical.from_codes(self.status_codes, status_names).repeat(columns)
-        frame = pandas.DataFrame(table)
-        return frame.dropna(subset=["t_sample"]).reset_index(drop=True) if self._sampled else frame
+        return conversions.to_pandas(self)
+
+    def to_netcdf(self, path: Path) -> None:
+        """Writes what `to_xarray` has as netCDF-4, which xarray, MATLAB, Julia and R read, by the package netCDF4 or
+        h5netcdf. Statuses are numbers there, with the flags of the CF conventions. The file replaces one of that name
+        when it is whole, as those of the other formats do."""
+        conversions.write_netcdf(self, path_text(path))
+
+    def to_csv(self, path: Path) -> None:
+        """Writes the table of `to_pandas` as text with commas, by pandas or polars."""
+        conversions.write_csv(self, path_text(path))
+
+    def to_parquet(self, path: Path) -> None:
+        """Writes the table of `to_pandas` as a Parquet file, by pandas and pyarrow, or by polars."""
+        conversions.write_parquet(self, path_text(path))
+
+    def to_mat(self, path: Path) -> None:
+        """Writes the results by their names as a MAT file of MATLAB's, version 5, by SciPy: a row for each instance,
+        and a column for each phase or sample. `status_names(status_codes + 1)` are the statuses there."""
+        conversions.write_mat(self, path_text(path))
 
     @property
     def plot(self) -> Plots:

@@ -125,10 +125,19 @@ class _Call:
         self.report = EmptyReport(max(self.core_options.phases - record.from_phase, 0), self.real)
         self.kernel, self.failure = no_kernel, None
 
+    def describe(self) -> dict[str, Any]:
+        """What is solved, as plain values."""
+        default = Options()
+        controls = [self.control] if isinstance(self.control, str) else list(self.control)
+        return {"model": self.model.name or "model", "source": self.model.source()[0], "method": self.method,
+                "control": controls, "precision": self.precision,
+                "options": {name: repr(value) for name, value in vars(self.options).items()
+                            if value is not getattr(default, name) and repr(value) != repr(getattr(default, name))}}
+
     def run(self, seconds: float, notes: Sequence[str] = ()) -> Run:
         """What has been computed, in so many seconds. Raises what ended the computation."""
         run = Run(self.components, self.ensemble, self.report, self.kernel, self.sweep, self.given, self.domain,
-                  self.recorded, self.sampled, seconds, self.core_options.record, notes)
+                  self.recorded, self.sampled, seconds, self.core_options.record, notes, self.describe)
         if isinstance(self.model, WithSensitivities) and self.count and (undefined := note(run)) is not None:
             run.report.notes.append(undefined)
         if isinstance(self.failure, KeyboardInterrupt):

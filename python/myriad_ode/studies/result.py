@@ -11,8 +11,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from .. import _core
+from ..base import html
 from ..base.errors import Error
 from ..base.statuses import first_failure, in_words, status_names
+from ..base.whole_files import replacing
 from ..models.components import name_of
 from ..results.quantities import names_of_symbol, of_component, times, unknown_quantity
 from ..sweeps.inputs import path_text
@@ -171,6 +173,12 @@ class StudyResult(Mapping):
         lines += [f"note: {note}" for note in self.notes] + [f"warning: {warning}" for warning in self.warnings]
         return "\n".join(lines)
 
+    def _repr_html_(self) -> str:
+        axes = " x ".join(f"{name} ({length})" for name, length in self._axes.items())
+        rows = [("study of", f"{self.size} instances" + (f": {axes}" if axes else "")), ("store", self.folder or ""),
+                ("variables", ", ".join(self._variables)), ("coordinates", ", ".join(self._coordinates))]
+        return html.table(row for row in rows if row[1]) + html.paragraphs(str(self).splitlines())
+
     def __reduce__(self) -> tuple[Any, ...]:
         if self.folder is None:
             raise Error("results in memory cannot be pickled: pickle result.to_xarray(), or give the study a store")
@@ -228,14 +236,8 @@ class StudyResult(Mapping):
         path = os.path.realpath(path_text(path))
         if "\\" in path:
             raise Error(f"the path {path!r} has a backslash, which netCDF takes for a slash: give another path")
-        temporary = f"{path}.part-{os.getpid()}"
-        try:
-            with dataset_of(temporary, "w") as file:
-                self._write(file, complevel)
-            os.replace(temporary, path)
-        finally:
-            if os.path.exists(temporary):
-                os.remove(temporary)
+        with replacing(path) as temporary, dataset_of(temporary, "w") as file:
+            self._write(file, complevel)
 
     def _write(self, file: Any, complevel: int) -> None:
         written = self._written()

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from .. import _core
+from ..base import html
 from ..base.component_kinds import recorded as recorded_kinds, shared as shared_kinds
 from ..base.core_words import in_words, with_event_names
 from ..base.errors import Error
@@ -209,6 +210,9 @@ class Study:
 
     def __repr__(self) -> str:
         return f"<myriad study of {self.size} instances>"
+
+    def _repr_html_(self) -> str:
+        return html.table([("study of", f"{self.size} instances"), ("model", repr(self._given[0]))])
 
     # -- The run ------------------------------------------------------------------------------------------------------
 
