@@ -313,7 +313,7 @@ def test_a_result_of_all_instances_whose_file_was_removed_is_not_read_as_a_numbe
         file, = (p for p in (tmp_path / "store" / name).rglob("*") if p.is_file() and p.name != "zarr.json")
         content = file.read_bytes()
         file.unlink()
-        for read in (lambda r: r[name], lambda r: r.to_xarray()[name].values):
+        for read in (lambda r, name=name: r[name], lambda r, name=name: r.to_xarray()[name].values):
             with pytest.raises(my.Error, match=f"{name}.* is damaged .it is missing.: start the study again"):
                 read(my.open_study(tmp_path / "store"))
         file.write_bytes(content)
