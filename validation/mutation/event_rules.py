@@ -17,6 +17,8 @@ import subprocess
 import sys
 import tempfile
 
+import headers
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 HEADERS = "include/myriad/kernel/event"
 # In order of their cost: the first failure ends the search.
@@ -82,7 +84,7 @@ MUTATIONS = {
                              "redo.crossed.set(j, crossed[j]);", "what is zero at a trial's end may cross along"),
     "alone_at_start": ("event_location.hpp", "(again ? crossed[j] : along)", "false",
                        "at the start of a step, too, functions fire together"),
-    "moves_no_time": ("side_tracker.hpp", "own.fresh = own.fresh | which;", "",
+    "end_of_phase_forgotten": ("side_tracker.hpp", "own.fresh = own.fresh | which;", "",
                       "a phase keeps that an event fired where it ended"),
     # After actions
     "sign_not_taken": ("side_resolver.hpp", "if (moved && beyond) side = sign_of(g[j]);", "",
@@ -147,10 +149,7 @@ MUTATIONS = {
 
 def stale_mutations():
     """Messages about mutations whose text does not stand in its header exactly once, and tests that are not there."""
-    found = {name: (ROOT / HEADERS / header).read_text().count(text)
-             for name, (header, text, _, _) in MUTATIONS.items()}
-    stale = [f"{name}: {MUTATIONS[name][0]} has the text {count} times, not once: {MUTATIONS[name][1]}"
-             for name, count in found.items() if count != 1]
+    stale = headers.stale(MUTATIONS, ROOT / HEADERS)
     for file, _, test in (test.partition("::") for test in TESTS):
         if test and f"def {test}(" not in (ROOT / "python/tests" / file).read_text():
             stale.append(f"there is no test {test} in {file}")
@@ -194,17 +193,14 @@ def main():
     with tempfile.TemporaryDirectory(prefix="myriad-mutations-") as folder:
         site = pathlib.Path(folder) / "site"
         shutil.copytree(options.site, site)
-        headers = site / "myriad_ode/include/myriad"
-        shutil.copytree(ROOT / "include/myriad", headers, dirs_exist_ok=True)
+        shutil.copytree(ROOT / "include", site / "myriad_ode/include", dirs_exist_ok=True)
         for name in names:
-            header, text, becomes, rule = MUTATIONS[name]
-            path = headers / "kernel/event" / header
-            content = path.read_text()
-            path.write_text(content.replace(text, becomes))
+            path, content = headers.change(MUTATIONS[name], site / "myriad_ode" / HEADERS)
             found = first_failure(site, options.python, folder)
             path.write_text(content)
             missed += found is None
-            print(f"{name} ({rule}): " + ("NOT FOUND" if found is None else f"found by {found}"), flush=True)
+            verdict = "NOT FOUND" if found is None else f"found by {found}"
+            print(f"{name} ({MUTATIONS[name][3]}): {verdict}", flush=True)
     print(f"{len(names)} mutations, {missed} not found")
     return 1 if missed else 0
 

@@ -21,6 +21,8 @@ import subprocess
 import sys
 import threading
 
+import headers
+
 _upper_solve = """<0, n_state<Model>>([&](auto s) MYRIAD_LAMBDA {
         const auto row = lu_type::template at<&tables::pivot>(s);
         S x = b[row];
@@ -73,25 +75,14 @@ DEFAULT = ["swapped_direction", "lost_action", "stale_slope", "rejected_step_acc
 MOST_TIMES, SECONDS = 8, 120
 
 
-def stale_mutations(source):
-    """Messages about mutations whose text is not in the sources exactly once."""
-    found = {name: (source / "include/myriad" / header).read_text().count(text)
-             for name, (header, text, _, _) in MUTATIONS.items()}
-    return [f"{name}: {MUTATIONS[name][0]} has the text {count} times, not once: {MUTATIONS[name][1]}"
-            for name, count in found.items() if count != 1]
-
-
 def prepare(options, name):
     """The folder with the headers to compile with: a copy with one change."""
     if name is None:
         return options.source / "include"
-    header, text, becomes, _ = MUTATIONS[name]
     folder = options.work / name / "include"
     shutil.rmtree(options.work / name, ignore_errors=True)
     shutil.copytree(options.source / "include", folder)
-    path = folder / "myriad" / header
-    content = path.read_text()
-    path.write_text(content.replace(text, becomes))
+    headers.change(MUTATIONS[name], folder / "myriad")
     return folder
 
 
@@ -162,7 +153,7 @@ def main():
     unknown = [name for name in names if name not in MUTATIONS]
     if unknown:
         parser.error(f"there is no mutation {unknown[0]}: choose from {', '.join(MUTATIONS)}")
-    stale = stale_mutations(options.source)
+    stale = headers.stale(MUTATIONS, options.source / "include/myriad")
     if stale:
         parser.exit(1, "\n".join(["Mend these mutations:"] + stale) + "\n")
     wrong = 0

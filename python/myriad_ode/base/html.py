@@ -7,11 +7,15 @@ from collections.abc import Iterable, Sequence
 from html import escape
 
 
+def row(name: str, content: str) -> str:
+    """A row of a table: a name, and what is HTML already."""
+    left = ' style="text-align:left"'
+    return f"<tr><th{left}>{escape(name)}</th><td{left}>{content}</td></tr>"
+
+
 def table(rows: Iterable[tuple[str, str]]) -> str:
     """Rows of a name and a text."""
-    left = ' style="text-align:left"'
-    return "<table>" + "".join(f"<tr><th{left}>{escape(name)}</th><td{left}>{escape(text)}</td></tr>"
-                               for name, text in rows) + "</table>"
+    return f"<table>{''.join(row(name, escape(text)) for name, text in rows)}</table>"
 
 
 def columns(names: Sequence[str], rows: Iterable[Sequence[str]]) -> str:

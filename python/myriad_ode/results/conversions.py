@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -134,29 +135,23 @@ def _to_polars(run: Results, instead: str) -> Any:
 
 
 def write_csv(run: Results, path: str) -> None:
-    if _is_there("pandas"):
-        frame = to_pandas(run, "to_netcdf(path)")
-        with replacing(path) as temporary:
-            frame.to_csv(temporary, index=False)
-    elif _is_there("polars"):
-        frame = _to_polars(run, "to_netcdf(path)")
-        with replacing(path) as temporary:
-            frame.write_csv(temporary)
-    else:
-        raise Error("to_csv needs the package pandas or polars: `pip install pandas`")
+    _write_table(run, path, "csv", "the package pandas or polars: `pip install pandas`")
 
 
 def write_parquet(run: Results, path: str) -> None:
-    if _is_there("pandas") and (_is_there("pyarrow") or _is_there("fastparquet")):
-        frame = to_pandas(run, "to_netcdf(path)")
-        with replacing(path) as temporary:
-            frame.to_parquet(temporary, index=False)
+    _write_table(run, path, "parquet", "the packages pandas and pyarrow, or polars: `pip install pandas pyarrow`")
+
+
+def _write_table(run: Results, path: str, form: str, needed: str) -> None:
+    """Writes the table of `to_pandas` in a form that both pandas and polars have."""
+    if _is_there("pandas") and (form == "csv" or _is_there("pyarrow") or _is_there("fastparquet")):
+        write = functools.partial(getattr(to_pandas(run, "to_netcdf(path)"), f"to_{form}"), index=False)
     elif _is_there("polars"):
-        frame = _to_polars(run, "to_netcdf(path)")
-        with replacing(path) as temporary:
-            frame.write_parquet(temporary)
+        write = getattr(_to_polars(run, "to_netcdf(path)"), f"write_{form}")
     else:
-        raise Error("to_parquet needs the packages pandas and pyarrow, or polars: `pip install pandas pyarrow`")
+        raise Error(f"to_{form} needs {needed}")
+    with replacing(path) as temporary:
+        write(temporary)
 
 
 _longest_in_matlab = 63

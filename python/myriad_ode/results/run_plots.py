@@ -9,6 +9,7 @@ import numpy as np
 
 from ..base import plots
 from ..base.errors import Error
+from ..base.html import row
 from ..base.statuses import status_names
 from ..models.components import name_of
 
@@ -113,9 +114,6 @@ class Plots:
 def html(run: Results) -> str:
     """What a notebook shows of a run: its sweep, statuses, results by name and report."""
     from html import escape
-
-    def row(name: str, value: str) -> str:
-        return f"<tr><th style=\"text-align:left\">{name}</th><td style=\"text-align:left\">{value}</td></tr>"
 
     kinds = (("recorded by phase", run.records), ("samples", run.samples), ("at the end", {**run.states,
                                                                                           **run.accessories}))

@@ -127,8 +127,7 @@ def saved(run: Results) -> Saved:
     arrays: dict[str, Array] = {}
     for source, kind, number in _places(components, run._recorded, run._records_time, run._sampled):
         arrays[_place(source, kind, number)] = np.asarray(
-            ensemble.array(kind, number) if source == "ensemble" and kind not in kinds.shared else
-            ensemble.array(kind) if source == "ensemble" else
+            ensemble.array(kind, number) if source == "ensemble" else
             run._records.records(kind, number) if source == "records" else ensemble.samples(number))
     if run._sampled:
         arrays["stored_samples"] = np.asarray(ensemble.stored_samples())

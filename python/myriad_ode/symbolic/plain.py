@@ -18,8 +18,8 @@ _of_tables = ("element", "dot", "lookup", "find_interval")
 
 
 def to_plain(roots: Sequence[Node]) -> tuple[dict[str, Any], list[np.ndarray[Any, Any]]]:
-    """Expressions as what JSON can hold, and the values of their tables. Of a product with a
-    table it is told which elements it takes."""
+    """Expressions as what JSON can hold, and the values of their tables. A product with a row of a table is written
+    with the places of its elements."""
     nodes = walk(roots)
     tables = tables_of(nodes)
     values = [table.values for table in tables]

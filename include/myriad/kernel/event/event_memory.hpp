@@ -67,7 +67,7 @@ struct event_scratch {
     // of the functions at one end of the step, with their values in the middle of it
     vec<R, n_event<Model>> tolerance, slope, heading, middle;
     mask_set<bool, n_event<Model>> crosses;
-    bool alone;  // one of them crosses, and no other: its slope is all that is asked
+    bool alone;  // no other crosses, so that only slopes are needed
     bool flat;   // one of them has no slope that tells where it goes
     std::int32_t function;
 };
