@@ -222,8 +222,8 @@ def test_poincare(run_sweep):
 @every
 def test_lyapunov(run_sweep):
     table = run_sweep("lyapunov", instances=37, transient=20, phases=40)
-    run = my.solve(my.with_tangents(example_models.lorenz(), 3),
-                   {"rho": table["rho"], "sigma": 10, "beta": 8 / 3, "transient_phases": 20},
+    run = my.solve(my.with_tangents(example_models.lorenz(), 3, transient_phases=20),
+                   {"rho": table["rho"], "sigma": 10, "beta": 8 / 3},
                    start={"x": 1, "y": 1, "z": 1}, time=(0, 0.25), phases=60, rtol=1e-8, atol=1e-8, carry_on_step=True,
                    method="tsitouras_5", device="cpu")
     exponents = my.exponents(run)
@@ -237,8 +237,8 @@ def test_lyapunov_map(run_sweep):
     call = dict(time=(0, tau), phases=18, rtol=1e-9, atol=1e-9, carry_on_step=True, method="dormand_prince_8",
                 device="cpu")
     values, start = {"k": table["k"], "B": table["B"]}, {"x": 1, "v": 0.1}
-    library = my.solve(my.with_tangents(example_models.forced_duffing()), {**values, "transient_phases": 6},
-                       start=start, **call)
+    library = my.solve(my.with_tangents(example_models.forced_duffing(), transient_phases=6), values, start=start,
+                       **call)
     assert np.array_equal(my.exponents(library)[:, 0], table["lambda_library"])
     begin = {name: library.start[f"{state}_tangent_1"] for name, state in (("a", "x"), ("b", "v"))}
     hand = my.solve(example_models.hand_tangent(), {**values, "transient": 6}, start={**start, **begin, "growth": 0},

@@ -24,8 +24,8 @@ duffing = my.model({x: v, v: x - x**3 - k * v + B * my.cos(my.time)}, name="duff
 # counted.
 
 # %%
-plane = my.grid({k: np.linspace(0.05, 0.35, 64), B: np.linspace(0.0, 0.5, 56)}, {"transient_phases": 40})
-with_tangents = my.with_tangents(duffing, 2)
+plane = my.grid({k: np.linspace(0.05, 0.35, 64), B: np.linspace(0.0, 0.5, 56)})
+with_tangents = my.with_tangents(duffing, 2, transient_phases=40)
 run = my.solve(with_tangents, plane, start={x: 1, v: 0.1}, time=(0, 2 * np.pi), phases=140, rtol=1e-6, atol=1e-6,
                method="tsitouras_5", carry_on_step=True)
 exponents = my.exponents(run)

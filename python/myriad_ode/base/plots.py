@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 # What is returned is any to type checkers: matplotlib says of axes that their figure may be one which cannot be saved.
 
+__all__ = ["bifurcation", "parameter_map", "phase_portrait", "profile", "statuses", "time_series", "waterfall"]
+
 # Okabe and Ito's colours, which the colour-blind can tell apart.
 _colours = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#F0E442", "#000000")
 _many_points = 300_000  # from which on a picture shows their density
@@ -273,3 +275,7 @@ def profile(x: Any, loss: Any, threshold: float, *, logarithmic: bool = False, x
     axes.set_xlabel(xlabel)
     axes.set_ylabel(ylabel)
     return axes
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)
