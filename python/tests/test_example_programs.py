@@ -468,7 +468,7 @@ def test_monte_carlo_of_the_page(run_sweep):
 
 @pytest.mark.long
 def test_bubbles_of_the_page(run_sweep):
-    """At a pressure of 0.5 bar, where no bubble is chaotic. The page's constants are rounded to a few digits. Its largest
+    """At 0.5 bar, where no bubble is chaotic. The page's constants are rounded to a few digits. Its largest
     radius of a period may be at an end of it, the program's is that of a maximum or of the begin."""
     table = run_sweep("bubble_response", instances=37, transient=6, phases=3, pressure=0.5)
     page = defined_by("bubble_resonance")
