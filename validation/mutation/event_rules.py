@@ -5,8 +5,8 @@ is changed, and the tests run that are compiled with it: C++ programs of a build
 
 Usage: event_rules.py [--build DIR] [--site DIR] [--only NAME,...] [--jobs N] [--seconds S] [--python PROGRAM]
        event_rules.py --check
-`--build` is a folder of CMake's with Ninja in which the programs are built. `--site` holds an installed myriad_ode; its
-headers are replaced by this tree's. `--check` only shows that each text stands in its header exactly once. Exit status 1 if a mutation was not
+`--build` is a folder of CMake's with Ninja in which the programs are built. `--site` holds an installed myriad_ode of
+this tree. `--check` only shows that each text stands in its header exactly once. Exit status 1 if a mutation was not
 found, or a text is not there.
 """
 import argparse
@@ -213,12 +213,15 @@ class Package:
 
     def first_failure(self, mutation, work, options):
         site = work / "site"
-        shutil.copytree(self.site, site, copy_function=os.link, ignore=shutil.ignore_patterns("include"))
-        shutil.copytree(ROOT / "include", site / "myriad_ode/include")
-        headers.change(mutation, site / "myriad_ode" / HEADERS)
+        shutil.copytree(self.site, site, copy_function=os.link)
+        folder = site / "myriad_ode" / HEADERS
+        (folder / mutation[0]).unlink()
+        shutil.copy(ROOT / HEADERS / mutation[0], folder)
+        headers.change(mutation, folder)
         command = [options.python, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "--tb=line"]
         command += [str(ROOT / "python/tests" / test) for test in TESTS]
-        done = run(command, options, cwd=work, env={**os.environ, "PYTHONPATH": str(site), "MYRIAD_TEST_COMPILED": "1",
+        folders = os.pathsep.join(filter(None, [str(site), os.environ.get("PYTHONPATH")]))
+        done = run(command, options, cwd=work, env={**os.environ, "PYTHONPATH": folders, "MYRIAD_TEST_COMPILED": "1",
                                                     "PYTHONDONTWRITEBYTECODE": "1"})
         if isinstance(done, str) or done.returncode == 0:
             return done if isinstance(done, str) else None

@@ -130,22 +130,22 @@ private:
     MYRIAD_FUNCTION trial_outcome locate_plain(int i, ends_of_step& step, const trial_ends<Model, S>& ends,
                                                const flags& crossed, fired& events) const {
         auto& own = sides.memory_of(i);
-        const location at{sides};
         if (crossed.any_of()) {
             reals side;
             MYRIAD_UNROLL
             for (int j = 0; j < MYRIAD_LENGTH(m); ++j) side[j] = sides.e.above.get(j, i) ? R(1) : R(-1);
             step.g = detail::evaluate_events<Model>(step.t, step.y, step.p);
-            at.evaluate_end_slope(i, step, ends);
-            at.begin_or_shorten(i, step, side, crossed, step_part<R>{}, plain_nearness<Model, R>{sides.args}, events);
+            location{sides}.evaluate_end_slope(i, step, ends);
+            location{sides}.begin_or_shorten(i, step, side, crossed, step_part<R>{}, plain_nearness<Model, R>{sides.args}, events);
             return trial_outcome::is_redone;
         }
         auto& redo = own.redo;
         const R g = detail::element(step.g1, redo.target), tolerance = redo.tolerance[redo.target];
         if (!is_close(abs(g), tolerance)) {
-            at.evaluate_end_slope(i, step, ends);
+            location{sides}.evaluate_end_slope(i, step, ends);
             const R guess = step.h - g * reciprocal(detail::element(step.slopes1(), redo.target));
-            const bool before = (g > R(0)) == sides.e.above.get(redo.target, i);
+            const flags above = sides.e.above.of_lane(i);  // a copy, else all sides would lie in memory for the index
+            const bool before = (g > R(0)) == above[redo.target];
             bool further = abs(g) > tolerance;
             if (further) {
                 redo.lengthen(step.h, guess);
@@ -153,14 +153,14 @@ private:
                 further = redo.improve(step.h, guess, before);
             }
             if (further) {
-                at.redo_step(i);
+                location{sides}.redo_step(i);
                 return trial_outcome::is_redone;
             }
         }
         own.at_jump.clear();
         MYRIAD_UNROLL
         for (int j = 0; j < MYRIAD_LENGTH(m); ++j) events.put(j, i, redo.target == j, step.g1[j]);
-        at.end(i);
+        location{sides}.end(i);
         return trial_outcome::stands_before_sides;
     }
 };
