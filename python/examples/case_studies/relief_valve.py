@@ -67,7 +67,7 @@ my.plots.bifurcation(flows, run["y_min"], axes=upper, color="#E69F00", markersiz
 upper.plot(flows, np.where(growth < 0, rest, np.nan), color="black", linewidth=1)
 upper.plot(flows, np.where(growth < 0, np.nan, rest), color="black", linewidth=1, linestyle="--")
 for name, at, level, colour in (("largest opening", 2.2, 3.6, "#0072B2"), ("smallest opening", 3.4, 0.2, "#E69F00"),
-                                ("equilibrium", 4.2, 1.55, "black")):
+                                ("equilibrium", 4.7, 0.95, "black")):
     upper.annotate(name, (at, level), color=colour)
 upper.set_ylabel("displacement y")
 my.plots.bifurcation(flows, np.where(run["impacts"] > 0, run["speed"], np.nan), axes=lower, color="#D55E00",
