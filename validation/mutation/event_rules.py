@@ -61,10 +61,10 @@ MUTATIONS = {
                          "length = is_inside(guess, h) ? guess : middle;", "bisection after ten trials"),
     "first_within_tolerance": ("general_locator.hpp", "redo.improve(step.h, guess, reached.gap > R(0))", "false",
                                "a step within the tolerance is improved"),
-    "started_at_the_secant": ("crossing.hpp", "x = max(x, b * reciprocal(b + fall));", "",
+    "started_at_the_secant": ("crossing.hpp", "if (b >= R(0)) x = max(", "if (false) x = max(",
                               "from where a function rises, the guess is its return"),
-    "crosses_at_start": ("earliest_crossing.hpp", "if (!(g.value > R(0)) && (g.slope < R(0) || (left && g.slope == R(0)))) "
-                         "return R(0);", "", "a function past zero at the start that goes on crosses there"),
+    "crosses_at_start": ("earliest_crossing.hpp", "if (!(g.value > R(0)) && (g.slope < R(0) || (left && g.slope == "
+                         "R(0)))) return R(0);", "", "a function past zero at the start that goes on crosses there"),
     "last_of_events": ("earliest_crossing.hpp", "if (x < first.fraction) first", "if (x > first.fraction || "
                        "first.fraction > R(1)) first", "the earliest crossing is located first"),
     "coarse_roundings_at_start": ("locator.hpp", "plain = plain && tolerance > R(0) && (near ||",
@@ -78,8 +78,12 @@ MUTATIONS = {
     # Together, each once
     "alone": ("general_locator.hpp", "redo.target == j || (redo.crossed[j] && (heads || jumps))", "redo.target == j",
               "functions fire together if their crossings cannot be told apart"),
-    "along_without_heading": ("general_locator.hpp", "here[j] && side[j] * heading[j] < R(0)", "here[j]",
+    "along_without_heading": ("general_locator.hpp", "(here[j] || narrow) && side[j] * heading[j] < R(0)",
+                              "(here[j] || narrow)",
                               "what fires along must be on its way across"),
+    "apart_in_a_bracket": ("general_locator.hpp", "const bool heads = (here[j] || narrow)",
+                           "const bool heads = here[j]",
+                           "what crosses between the same two times crosses together"),
     "jumps_apart": ("general_locator.hpp", "narrow && side[j] * step.g1[j] > band && !here[j]", "false",
                     "functions that jump at one instant fire together"),
     "undecided_left": ("general_locator.hpp", "undecided = undecided || (soon && !here[j]);", "", "the step is redone "

@@ -22,18 +22,16 @@ struct function_ends {
 inline constexpr double arrival_part = 0.1, guess_part = 0.01, largest_part = 1.0 / 64;
 
 /// The root, 0 < x < 1, of the cubic a + x (b + x (c + x d)), which is positive at 0, or rises from zero there, and is
-/// negative at 1: Newton's method, safeguarded by bisection, until the value is within `close` of zero. Six iterations are enough for a guess.
-/// Returns 1/2 if the coefficients are not finite.
+/// negative at 1: Newton's method, safeguarded by bisection, until the value is within `close` of zero. Six iterations
+/// are enough for a guess. Returns 1/2 if the coefficients are not finite.
 template <class R>
 MYRIAD_FUNCTION R cubic_root(R a, R b, R c, R d, R close) {
     constexpr R last = R(1) - R(4) * epsilon_of<R>;
     R low = R(0), high = R(1);
     const R fall = a - (((a + b) + c) + d);  // from one end to the other
-    R x = a * reciprocal(fall);  // the secant
-    if (b >= R(0)) {  // where it rises from zero: those without a, divided by x, and without b, divided by x again
-        x = max(x, b * reciprocal(b + fall));
-        if (c > R(0)) x = max(x, c * reciprocal(-d));
-    }
+    R x = a * reciprocal(fall);              // the secant
+    // Where it rises from zero: of the cubic without a, over x, or without b, too, over x again.
+    if (b >= R(0)) x = max(x, c > R(0) ? c * reciprocal(-d) : b * reciprocal(b + fall));
     MYRIAD_ROLLED
     for (int i = 0; i < 6; ++i) {
         if (!(x > low && x < high)) x = R(0.5) * (low + high);

@@ -134,9 +134,9 @@ MYRIAD_RARE_FUNCTION void find_first_signs(event_place<Model, R>* path) {
     for (int j = 0; j < MYRIAD_LENGTH(m); ++j) path->sign[j] = R(0);
     const R least = max(R(64) * epsilon_of<R> * (abs(path->t) + abs(path->h)), R(smallest_normal_of<R>));
     path->length = copysign(max(least, path->first), path->h);
+    // The bound is finite, so that the search ends.
     MYRIAD_ROLLED
-    const R most = R(1.0 / 64) * abs(path->t) + R(1.0 / 64) * abs(path->h);  // finite, so that the search ends
-    while (abs(path->length) <= most) {
+    while (abs(path->length) <= R(1.0 / 64) * abs(path->t) + R(1.0 / 64) * abs(path->h)) {
         MYRIAD_OPTIMISATION_BARRIER(path);  // else what it points to occupies registers throughout
         const R length = path->length;
         MYRIAD_UNROLL
