@@ -32,8 +32,8 @@ struct solvable {
     }
 };
 
-/// Two states that share two processes, whose noise does not commute; E x^2 = exp(-t) for x(0) = 1. Debrabant and
-/// Roessler, Appl. Numer. Math. 59 (2009) 582-594, eq. (6.3), and Komori, J. Comput. Appl. Math. 206 (2007) 158.
+/// Two states that share two processes, whose noise does not commute; E x^2 = exp(-t) for x(0) = 1, as
+/// 2 (-273 / 512) + 1 / 16 + 1 / 256 = -1. After Debrabant and Roessler, Appl. Numer. Math. 59 (2009) 582-594.
 struct sharing {
     enum state { x, z, n_state };
     enum noise { first, second, n_noise };

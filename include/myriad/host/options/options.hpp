@@ -145,8 +145,8 @@ struct options {
 
     /// The seed of the paths of a stochastic equation (`diffusion`).
     std::int64_t seed = 0;
-    /// The cells of these paths, in time: steps that are a multiple of a cell, or one of 65 536 equal parts or a few of
-    /// them, follow the same path. 0: the step.
+    /// The cells of these paths, in time: steps that are a multiple of one, or a number of 65536ths of one, follow the
+    /// same path. 0: the step.
     double noise_step = 0;
 
     std::vector<event_options> events = {};  ///< one for each event, in the model's order; empty: defaults for all

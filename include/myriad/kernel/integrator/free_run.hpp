@@ -64,7 +64,7 @@ struct free_run {
             block = block < run - taken ? block : run - taken;
             vec<S, n> now = y;
             path_of_run ahead = path;
-            MYRIAD_UNROLL_BY(4)
+            MYRIAD_UNROLL_BY(on_path ? 1 : 4)
             for (iteration_number i = 0; i < block; ++i) {
                 trial_step<Method, S, n> trial;
                 const S t = fma(S(done + count(static_cast<lane_of<count>>(i))), step, base);

@@ -9,16 +9,17 @@
 namespace myriad {
 
 /// y1 = y + h f + g dW + g g' (dW^2 - h) / 2, for Ito equations with diagonal noise: fixed steps, strong order 1, weak
-/// order 1. The derivative g' comes from dual numbers. Source: Milstein, Theory Probab. Appl. 19 (1974) 557-562;
-/// Kloeden and Platen, Numerical Solution of Stochastic Differential Equations (1992), eq. (10.3.12).
+/// order 1. The derivative g' comes from dual numbers. Source: Milstein, Theory Probab. Appl. 19 (1975) 557-562;
+/// Kloeden and Platen, Numerical Solution of Stochastic Differential Equations (1992), section 10.3.
 struct milstein {
     static constexpr int stages = 1;
     static constexpr int embedded_order = 0;
     static constexpr bool first_same_as_last = false;
-    static constexpr double strong_order = 1;
-    static constexpr double weak_order = 1;
-    static constexpr noise_taken noise = noise_taken::diagonal;
+    static constexpr double strong_order = 1;                    ///< with which paths converge
+    static constexpr double weak_order = 1;                      ///< with which means over paths converge
+    static constexpr noise_taken noise = noise_taken::diagonal;  ///< which it takes
 
+    /// The state at t1, which is t + h up to rounding; `slope` is the drift at (t, y).
     template <class Equation, class S, detail::extent n>
     MYRIAD_FUNCTION static vec<S, n> step(const Equation& equation, const S& t, const S& h, const S&,
                                           const vec<S, n>& y, const vec<S, n>& slope) {

@@ -15,10 +15,11 @@ struct stochastic_heun {
     static constexpr int stages = 2;
     static constexpr int embedded_order = 0;
     static constexpr bool first_same_as_last = false;
-    static constexpr double strong_order = 1;
-    static constexpr double weak_order = 1;
-    static constexpr noise_taken noise = noise_taken::any;
+    static constexpr double strong_order = 1;               ///< with which paths converge
+    static constexpr double weak_order = 1;                 ///< with which means over paths converge
+    static constexpr noise_taken noise = noise_taken::any;  ///< which it takes
 
+    /// The state at t1, which is t + h up to rounding; `slope` is the drift at (t, y).
     template <class Equation, class S, detail::extent n>
     MYRIAD_FUNCTION static vec<S, n> step(const Equation& equation, const S& t, const S& h, const S& t1,
                                           const vec<S, n>& y, const vec<S, n>& slope) {

@@ -19,8 +19,8 @@ struct path_constants {
     std::uint32_t key[2];  // of the counters
 };
 
-/// The key of a seed: a bijection, so that no two seeds have one (Steele, Lea and Flood, OOPSLA 2014, figure 16: the
-/// finalizer of SplitMix64), after a constant, so that paths share no key with the random numbers that hooks draw.
+/// The key of a seed: a bijection, so that no two seeds have one (the last function of SplitMix64: Steele, Lea and
+/// Flood, OOPSLA 2014), after a constant, so that paths share no key with the random numbers that hooks draw.
 constexpr std::uint64_t key_of_paths(std::uint64_t seed) {
     std::uint64_t z = seed + 0x9e3779b97f4a7c15;
     z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9;

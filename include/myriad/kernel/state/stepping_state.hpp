@@ -54,8 +54,9 @@ struct fixed_state_on_path : fixed_state<S> {
 
     /// A lane without an instance stays where it is.
     MYRIAD_FUNCTION void clear_path() {
-        from = to = per_step = path_place<S>{{0}, {0}};
-        path = {{0}, {0}};
+        using integers = path_integers<S>;
+        from = to = per_step = {typename integers::cell(0), typename integers::small(0)};
+        path = {typename integers::word(0), typename integers::word(0)};
     }
     MYRIAD_FUNCTION path_interval<S> interval(const path_constants<real_of<S>>& constants) const {
         return {from, to, path, constants};
