@@ -32,6 +32,22 @@ struct solvable {
     }
 };
 
+/// The same with stop times at equal intervals, which add to a state, and a hook that counts steps.
+struct interrupted : solvable {
+    enum accessory { interval, steps, n_accessory };
+    enum stop { addition, n_stop };
+
+    template <class R>
+    MYRIAD_FUNCTION static R stop_time(int, int number, const auto& p) {
+        return myriad::recurring(number, p.accessory[interval], p.accessory[interval], 1000);
+    }
+    MYRIAD_FUNCTION static void after_stop(int, int, auto& lane) { lane.y[decay] += 1; }
+    template <class R>
+    MYRIAD_FUNCTION static void after_step(auto& lane) {
+        lane.accessory[steps] += 1;
+    }
+};
+
 /// Two states that share two processes, whose noise does not commute; E x^2 = exp(-t) for x(0) = 1, as
 /// 2 (-273 / 512) + 1 / 16 + 1 / 256 = -1. After Debrabant and Roessler, Appl. Numer. Math. 59 (2009) 582-594.
 struct sharing {

@@ -151,6 +151,24 @@ TEST_CASE("phases that continue in time follow one path, and those that begin an
     CHECK(std::fabs((first * second).mean()) < 4 / std::sqrt(100.0));
 }
 
+TEST_CASE("steps that end at stop times, and begin there within a cell, follow the path") {
+    auto whole = bare(30);
+    run<em>(whole, {.step = 0.125, .seed = 6});
+    myriad::ensemble<noisy::interrupted> e(30);
+    for (int c = 0; c < solvable::n_state; ++c) e.state(c) = 0;
+    e.parameter(solvable::ito) = 1;
+    e.parameter(solvable::bare) = 1;
+    e.accessory(noisy::interrupted::interval) = Eigen::ArrayXd::LinSpaced(30, 0.01, 0.3);
+    e.accessory(noisy::interrupted::steps) = 0;
+    e.time_domain(0, 1);
+    myriad::solve<em>(tests::test_device(), e, {.step = 0.125, .seed = 6});
+    CHECK((e.state(solvable::growth) - whole.state(solvable::growth)).abs().maxCoeff() < 1e-3);
+    CHECK((e.state(solvable::decay) - whole.state(solvable::decay) - (1 / e.accessory(0) + 1e-9).floor())
+              .abs()
+              .maxCoeff() < 1e-3);
+    CHECK(e.accessory(noisy::interrupted::steps).minCoeff() >= 8);
+}
+
 TEST_CASE("phases in several calls give the same bits as in one") {
     for (const double length : {0.0, 0.07}) {
         auto at_once = start(37);

@@ -72,10 +72,7 @@ struct fixed_stepping {
                                                   static_cast<R>(get_lane(s.steps.done, i)), get_lane(s.steps.step, i));
                 if constexpr (keeps_low) beyond += get_lane(s.steps.time_low, i);
                 set_lane(s.h, i, -beyond);
-                if constexpr (on_path) {
-                    const auto length = detail::place_of_length(-beyond, args.noise.cell);
-                    detail::set_place(s.steps.to, i, detail::moved(detail::get_place(s.steps.from, i), length));
-                }
+                if constexpr (on_path) detail::set_place(s.steps.to, i, place_of_stop(i, -beyond));
             });
         }
     }
@@ -136,13 +133,23 @@ struct fixed_stepping {
 private:
     static constexpr bool on_path = stochastic_method<Method>;
 
-    /// Where lane i begins on its path. Its time counts from the instance's t_begin; where phases go back there, each
-    /// has a path of its own.
+    /// Where lane i begins on its path. Where phases go back to t_begin, each has a path of its own.
     MYRIAD_FUNCTION void begin_path(int i, R t) {
         const std::int64_t index = s.instance[i];
-        const R t_begin = args.t_begin != nullptr ? args.t_begin[index] : args.common_t_begin;
         s.steps.path.set(i, args.first_index + index, args.carry_time ? 0 : args.phase[index]);
-        detail::set_place(s.steps.from, i, detail::place_of_length(t - t_begin, args.noise.cell));
+        detail::set_place(s.steps.from, i, place_at(i, t));
+    }
+    /// The place of a time on the path of lane i, which counts from the instance's t_begin.
+    MYRIAD_FUNCTION path_place<R> place_at(int i, R t) const {
+        const R t_begin = args.t_begin != nullptr ? args.t_begin[s.instance[i]] : args.common_t_begin;
+        return detail::place_of_length(t - t_begin, args.noise.cell);
+    }
+    /// The place at the end of a last step of that length. Counted from t_begin, so that roundings to a place do not
+    /// add up; in single precision, where t tells fewer cells apart than steps are counted, from the beginning of the
+    /// step.
+    MYRIAD_FUNCTION path_place<R> place_of_stop(int i, R length) const {
+        if constexpr (sizeof(R) == sizeof(double)) return place_at(i, stop_of(i));
+        return detail::moved(detail::get_place(s.steps.from, i), detail::place_of_length(length, args.noise.cell));
     }
 
     /// The number of steps gives the time; it is only stored if something reads it.
