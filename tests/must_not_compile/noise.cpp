@@ -8,6 +8,8 @@
 // expect: this method takes diagonal or additive noise alone, but the model has an `enum noise
 // case: milstein_with_factors_of_other_states
 // expect: this method takes noise whose factor of a state depends on no other state: use
+// case: sra1_with_noise_that_is_not_additive
+// expect: this method takes additive noise alone, but the diffusion may depend on the state
 // case: diffusion_of_another_size
 // expect: diffusion has a wrong signature: it must be
 // case: diffusion_of_processes_that_is_no_matrix
@@ -92,6 +94,9 @@ struct crossed : walk {
     }
 };
 MYRIAD_INSTANTIATE(crossed, myriad::milstein)
+#endif
+#if defined(CASE_sra1_with_noise_that_is_not_additive)
+MYRIAD_INSTANTIATE(walk, myriad::sra1)
 #endif
 #if defined(CASE_diffusion_of_another_size)
 struct too_many : walk {

@@ -8,4 +8,5 @@ MYRIAD_INSTANTIATE(noisy::solvable, myriad::euler_maruyama, myriad::milstein, my
                    myriad::dense<myriad::euler_maruyama>)
 MYRIAD_INSTANTIATE_FLOAT(noisy::solvable, myriad::milstein)
 MYRIAD_INSTANTIATE(noisy::interrupted, myriad::euler_maruyama)
+MYRIAD_INSTANTIATE(noisy::additive, myriad::sra1)
 MYRIAD_INSTANTIATE(noisy::sharing, myriad::euler_maruyama)

@@ -48,6 +48,25 @@ struct interrupted : solvable {
     }
 };
 
+/// Noise that does not depend on the states: x = (x(0) + b t + a b W) / sqrt(1 + t), and one drift that is
+/// not linear.
+struct additive {
+    enum state { x, wave, n_state };
+    static constexpr double a = 0.7, b = 0.9;
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto t, const myriad::vec<R, n_state>& y, const auto&) {
+        using T = myriad::real_of<R>;
+        const auto u = T(1) + t;
+        return {T(b) / myriad::sqrt(u) - T(0.5) * y[x] / u, myriad::cos(T(4) * y[wave])};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> diffusion(auto t, const myriad::vec<R, n_state>&, const auto&) {
+        using T = myriad::real_of<R>;
+        return {R(T(a * b) / myriad::sqrt(T(1) + t)), R(T(1))};
+    }
+};
+
 /// Two states that share two processes, whose noise does not commute; E x^2 = exp(-t) for x(0) = 1, as
 /// 2 (-273 / 512) + 1 / 16 + 1 / 256 = -1. After Debrabant and Roessler, Appl. Numer. Math. 59 (2009) 582-594.
 struct sharing {

@@ -129,6 +129,26 @@ TEMPLATE_TEST_CASE("instances, processes, cells, phases, seeds and the halves of
     CHECK(std::fabs(square / pairs - 1) < 4 * std::sqrt(2.0 / pairs));
 }
 
+TEMPLATE_TEST_CASE("the eighths of a cell have variances of an eighth, and no correlation", "", double, float) {
+    using R = TestType;
+    constexpr int count = 1 << 14, eighths = 8;
+    double product[eighths][eighths]{};
+    for (int i = 0; i < count; ++i) {
+        double dw[eighths];
+        for (int k = 0; k < eighths; ++k) {
+            const path_place<R> begin{0, k * (parts_of_cell / eighths)};
+            const auto over = interval<R>(begin, myriad::detail::moved(begin, {0, parts_of_cell / eighths}), i);
+            dw[k] = static_cast<double>(myriad::detail::path_increments<1>(over)[0]) * std::sqrt(double{eighths});
+        }
+        for (int k = 0; k < eighths; ++k)
+            for (int j = 0; j <= k; ++j) product[k][j] += dw[k] * dw[j];
+    }
+    // Within four standard deviations.
+    for (int k = 0; k < eighths; ++k)
+        for (int j = 0; j <= k; ++j)
+            CHECK(std::fabs(product[k][j] / count - (k == j ? 1 : 0)) < 4 * std::sqrt((k == j ? 2.0 : 1.0) / count));
+}
+
 TEMPLATE_TEST_CASE("instances that differ in their high words, far cells and phases have paths of their own", "",
                    double, float) {
     using R = TestType;

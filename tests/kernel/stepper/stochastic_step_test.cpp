@@ -91,6 +91,33 @@ TEST_CASE("stochastic_heun has strong order one for Stratonovich equations") {
     CHECK(found.wide == Approx(1).margin(0.05));
 }
 
+TEST_CASE("sra1 has strong order three halves for additive noise, and two if the drift is linear") {
+    using noisy::additive;
+    constexpr std::int64_t paths = 2000, seed = 3;
+    const auto at_end = [](double step) {
+        myriad::ensemble<additive> e(paths);
+        e.state(additive::x) = 0;
+        e.state(additive::wave) = 0.1;
+        e.time_domain(0, end);
+        myriad::solve<myriad::sra1>(tests::test_device(2), e, {.step = step, .seed = seed, .noise_step = finest});
+        return e;
+    };
+    const auto w = wiener(paths, seed);
+    const Eigen::ArrayXd exact =
+        (additive::b * end + additive::a * additive::b * w.state(solvable::growth)) / std::sqrt(1 + end);
+    // Steps of a 16th of a cell, whose errors are 64 times less than those of the finest steps that are compared.
+    const auto of_reference = at_end(finest / 16);
+    const Eigen::ArrayXd reference = of_reference.state(additive::wave);
+    std::array<double, halvings> linear{}, curved{};
+    for (int k = 0; k < halvings; ++k) {
+        const auto e = at_end(coarsest / (1 << k));
+        linear[static_cast<std::size_t>(k)] = -std::log2((e.state(additive::x) - exact).abs().mean());
+        curved[static_cast<std::size_t>(k)] = -std::log2((e.state(additive::wave) - reference).abs().mean());
+    }
+    CHECK(slope(linear) == Approx(2).margin(0.05));
+    CHECK(slope(curved) == Approx(1.5).margin(0.05));
+}
+
 TEST_CASE("euler_maruyama has weak order one where the noise does not commute") {
     // Differences between steps h and h / 2 along the same paths, whose spread is far below that of the values.
     constexpr std::int64_t paths = 200'000;

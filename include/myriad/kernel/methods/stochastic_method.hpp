@@ -12,6 +12,8 @@ namespace myriad::detail {
 ///     step(equation, t, h, t1, y, slope)
 ///                                  the state at t1, which is t + h up to rounding; `slope` is the drift at (t, y)
 ///
+///     uses_integrals               if it takes integrals of the path over a step, beside its increments
+///
 /// beside `stages`, the evaluations of the drift, embedded_order (0: fixed steps) and first_same_as_last (false).
 template <class Method>
 concept stochastic_method = requires {
@@ -22,11 +24,22 @@ concept stochastic_method = requires {
 
 }  // namespace myriad::detail
 
+namespace myriad::detail {
+
+/// Whether a method takes integrals of the path.
+template <class Method>
+inline constexpr bool uses_integrals = requires {
+    requires Method::uses_integrals;
+};
+
+}  // namespace myriad::detail
+
 namespace myriad {
 
 /// The noise that a method takes.
 enum class noise_taken {
     any,       ///< any diffusion
+    additive,  ///< a diffusion that does not depend on the state
     diagonal,  ///< a Wiener process for each state, whose factor depends on no other state; or additive noise
 };
 

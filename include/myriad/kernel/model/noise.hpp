@@ -92,7 +92,7 @@ inline constexpr bool is_additive = additive_noise<Model> || !dependence_of_nois
 
 /// The most Wiener processes that the counters of a path have room for.
 template <class R>
-inline constexpr int most_processes = 256 * normals_per_block<R>;
+inline constexpr int most_processes = groups_of_increments* normals_per_block<R>;
 
 /// Refuses a stochastic equation with a method for ordinary ones and the reverse, and what is not there for noise.
 template <class Model, class Method, class R>
@@ -105,9 +105,9 @@ constexpr bool check_noise() {
     } else {
         static_assert(stochastic_method<Method>,
                       "the model has a diffusion, which methods for ordinary equations would ignore: use "
-                      "euler_maruyama, milstein or stochastic_heun");
+                      "euler_maruyama, milstein, stochastic_heun or sra1");
         static_assert(n_wiener<Model> <= most_processes<R>,
-                      "the model has more than 512 Wiener processes, or 1024 in single precision: more than the "
+                      "the model has more than 256 Wiener processes, or 512 in single precision: more than the "
                       "counters of a path have room for");
         static_assert(!has_events<Model>,
                       "a model with a diffusion has no events yet: its paths are too rough to locate them; look for a "
@@ -117,6 +117,11 @@ constexpr bool check_noise() {
         static_assert(!has_summaries<Model>,
                       "a model with a diffusion has no summaries yet: between two steps its paths are not known");
         if constexpr (stochastic_method<Method>) {
+            if constexpr (Method::noise == noise_taken::additive)
+                static_assert(
+                    is_additive<Model>,
+                    "this method takes additive noise alone, but the diffusion may depend on the state: use "
+                    "another method, or declare `static constexpr bool additive_noise = true;` if it does not");
             if constexpr (Method::noise == noise_taken::diagonal) {
                 static_assert(is_additive<Model> || !has_general_noise<Model>,
                               "this method takes diagonal or additive noise alone, but the model has an `enum noise`, "

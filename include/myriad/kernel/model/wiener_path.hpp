@@ -157,20 +157,26 @@ MYRIAD_CALLED_FUNCTION group_increments<S> increments_between(MYRIAD_CALL_ARGUME
     return sum;
 }
 
+/// Whether a step is one whole cell, forwards, in all lanes: as it usually is.
+template <class S>
+MYRIAD_FUNCTION bool is_one_cell(const path_interval<S>& over) {
+    using small = typename path_integers<S>::small;
+    return all((over.from.part == small(0)) & (over.to.part == small(0)) &
+               (over.to.cell == over.from.cell + typename path_integers<S>::cell(1)));
+}
+
 /// The increments of so many processes over a step. The same bits whichever way they are computed: lanes of a pack are
 /// neighbours only.
 template <extent processes, class S>
 MYRIAD_FUNCTION vec<S, processes> path_increments(const path_interval<S>& over) {
-    using cell_number = typename path_integers<S>::cell;
     using small = typename path_integers<S>::small;
     constexpr int per_group = normals_per_block<real_of<S>>;
-    const bool whole_cells = all((over.from.part == small(0)) & (over.to.part == small(0)) &
-                                 (over.to.cell == over.from.cell + cell_number(1)));
+    const bool whole_cell = detail::is_one_cell(over);
     vec<S, processes> dw;
     static_for<0, (processes + per_group - 1) / per_group>([&](auto g) MYRIAD_LAMBDA {
         constexpr int group = decltype(g)::value;
         group_increments<S> of_group;
-        if (whole_cells) {
+        if (whole_cell) {
             of_group = detail::path_normals<S>(over.from.cell, small(0), over.of, over.constants.key, group);
             MYRIAD_UNROLL
             for (int k = 0; k < per_group; ++k) of_group[k] = S(over.constants.root) * of_group[k];

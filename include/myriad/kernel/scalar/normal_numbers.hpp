@@ -98,6 +98,9 @@ MYRIAD_FUNCTION void normal_numbers(typename random_words<B>::word (&w)[4], std:
     }
 }
 
+/// Groups of processes. Those whose numbers are higher by this draw more of the same processes: path_integral.hpp.
+inline constexpr int groups_of_increments = 128;
+
 /// Integers of the lanes of S as paths have them: the numbers of cells, which single precision cannot tell apart beyond
 /// 32 bits; small numbers; and words of a counter.
 template <class S>

@@ -7,6 +7,7 @@
 #include "myriad/kernel/model/jacobian.hpp"
 #include "myriad/kernel/model/lane.hpp"
 #include "myriad/kernel/model/noise.hpp"
+#include "myriad/kernel/model/path_integral.hpp"
 #include "myriad/kernel/model/wiener_path.hpp"
 #include "myriad/kernel/scalar/dual.hpp"
 #include "myriad/kernel/stepper/explicit_rk.hpp"
@@ -25,30 +26,40 @@ struct trial_step<Method, S, n> {
 };
 
 /// What a method asks of an equation dy = f(t, y) dt + g(t, y) dW over one step, in which the increments dW are known.
-template <class Model, class S>
+template <class Model, class S, bool with_integrals = false>
 struct noisy_equation {
     static constexpr auto n = n_state<Model>;
     static constexpr auto m = n_wiener<Model>;
 
     const inputs<Model, S>& p;
     vec<S, m> increments;
+    vec<S, with_integrals ? m : 0> integrals;  // of W(s) - W(t) over the step
 
     /// f
     MYRIAD_FUNCTION vec<S, n> drift(const S& t, const vec<S, n>& y) const {
         return detail::evaluate_rhs<Model>(t, y, p);
     }
+    /// The means of W(s) - W(t) over the step.
+    MYRIAD_FUNCTION vec<S, m> mean_increments(const S& h) const {
+        vec<S, m> mean;
+        MYRIAD_UNROLL_UP_TO(64, 16)
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) mean[j] = integrals[j] / h;
+        return mean;
+    }
     /// g dW
-    MYRIAD_FUNCTION vec<S, n> noise(const S& t, const vec<S, n>& y) const {
+    MYRIAD_FUNCTION vec<S, n> noise(const S& t, const vec<S, n>& y) const { return times(t, y, increments); }
+    /// The product of g and one number for each process.
+    MYRIAD_FUNCTION vec<S, n> times(const S& t, const vec<S, n>& y, const vec<S, m>& by) const {
         const auto g = Model::template diffusion<S>(t, y, p);
         vec<S, n> sum;
         MYRIAD_UNROLL_UP_TO(64, 16)
         for (int c = 0; c < MYRIAD_LENGTH(n); ++c) {
             if constexpr (has_general_noise<Model>) {
-                sum[c] = g[c][0] * increments[0];
+                sum[c] = g[c][0] * by[0];
                 MYRIAD_UNROLL_UP_TO(64, 16)
-                for (int j = 1; j < MYRIAD_LENGTH(m); ++j) sum[c] = fma(g[c][j], increments[j], sum[c]);
+                for (int j = 1; j < MYRIAD_LENGTH(m); ++j) sum[c] = fma(g[c][j], by[j], sum[c]);
             } else {
-                sum[c] = g[c] * increments[c];
+                sum[c] = g[c] * by[c];
             }
         }
         return sum;
@@ -79,8 +90,15 @@ struct noisy_equation {
 template <class Method, class Model, class S>
 MYRIAD_FUNCTION void stochastic_step(const S& t, const S& h, const S& t1, const vec<S, n_state<Model>>& y,
                                      const inputs<Model, S>& p, trial_step<Method, S, n_state<Model>>& trial) {
-    const noisy_equation<Model, S> equation{p, detail::path_increments<n_wiener<Model>>(trial.noise)};
-    trial.y = Method::step(equation, t, h, t1, y, trial.slope);
+    constexpr auto m = n_wiener<Model>;
+    if constexpr (uses_integrals<Method>) {
+        const increments_with_integrals<S, m> of_path = detail::path_integrals<m>(trial.noise);
+        const noisy_equation<Model, S, true> equation{p, of_path.increment, of_path.integral};
+        trial.y = Method::step(equation, t, h, t1, y, trial.slope);
+    } else {
+        const noisy_equation<Model, S> equation{p, detail::path_increments<m>(trial.noise), {}};
+        trial.y = Method::step(equation, t, h, t1, y, trial.slope);
+    }
 }
 
 /// The state inside a step, at t + theta h: on the straight line between its ends. The path between them is not known,
