@@ -65,6 +65,12 @@ def test_a_flat_function_is_located_where_times_are_denormal_numbers(start):
     assert run.status[0] in ("success", "step_underflow")
 
 
+def test_an_integration_ends_whose_times_are_as_large_as_numbers_can_be():
+    event = my.event(x**3, do={n: n + 1})
+    run = solved({x: 1e-308}, event, {n: 0}, size=1, start={x: 0.0}, time=(9e307, 1.7e308))
+    assert run.status[0] == "success" and run[n][0] == 0
+
+
 @pytest.mark.parametrize("samples", [1, 8])
 def test_a_function_that_turns_in_a_kink_at_the_start_of_a_step_is_looked_at_once(samples):
     run = solved({x: 1.0}, my.event(1 + my.where(x > 0, x, -x), do={n: n + 1}), {n: 0}, size=1, start={x: 0.0},

@@ -1,14 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Which tests find that a rule of event location (docs/numerics.md, Events) is left out? For each mutation one header
-of an installed package's copy is changed, and Python tests run whose models are compiled with it.
+is changed, and the tests run that are compiled with it: C++ programs of a build folder, Python tests of a package.
 
-Usage: event_rules.py --site DIR [--only NAME,...] [--python PROGRAM]
+Usage: event_rules.py [--build DIR] [--site DIR] [--only NAME,...] [--jobs N] [--seconds S] [--python PROGRAM]
        event_rules.py --check
-DIR holds an installed myriad_ode; its headers are replaced by this tree's. `--check` only shows that each text stands
-in its header exactly once. Exit status 1 if a mutation was not found, or a text is not there.
+`--build` is a folder of CMake's with Ninja in which the programs are built. `--site` holds an installed myriad_ode of
+this tree. `--check` only shows that each text stands in its header exactly once. Exit status 1 if a mutation was not
+found, or a text is not there.
 """
 import argparse
+import concurrent.futures
 import os
 import pathlib
 import re
@@ -25,7 +27,7 @@ HEADERS = "include/myriad/kernel/event"
 TESTS = ["test_event_rules.py",
          "test_random_events.py::test_a_flat_event_function_is_located_to_the_resolution_of_time",
          "test_random_events.py::test_a_state_that_an_action_moves_onto_the_surface_of_another_event_does_not_cross_it"]
-SECONDS = 1500  # an endless loop is found, too
+PROGRAMS = ["event_test", "metamorphic_test"]
 
 # name: (header, text, replacement, the rule that it leaves out)
 MUTATIONS = {
@@ -66,9 +68,14 @@ MUTATIONS = {
                          "return R(0);", "", "a function past zero at the start that goes on crosses there"),
     "last_of_events": ("earliest_crossing.hpp", "if (x < first.fraction) first", "if (x > first.fraction || "
                        "first.fraction > R(1)) first", "the earliest crossing is located first"),
-    "coarse_roundings_at_start": ("locator.hpp", "plain = plain && tolerance > R(0) && (here ||",
-                                  "plain = plain && (here ||", "without a tolerance, rounding decides"),
-    "others_pass_plainly": ("locator.hpp", "arrives && !others", "arrives", "others that crossed are looked at"),
+    "coarse_roundings_at_start": ("locator.hpp", "plain = plain && tolerance > R(0) && (near ||",
+                                  "plain = plain && (near ||", "without a tolerance, rounding decides"),
+    "others_pass_plainly": ("locator.hpp", "left && (is_target || !own.redo.crossed[j])", "left",
+                            "others that crossed are looked at"),
+    "plain_first_within_tolerance": ("locator.hpp", "further = redo.improve(step.h, guess, before);", "",
+                                     "a step within the tolerance given is improved"),
+    "guesses_trusted": ("redone_step.hpp", "return tries < most_guesses && !is_between(h);", "return true;",
+                        "a jump is located by bisection"),
     # Together, each once
     "alone": ("general_locator.hpp", "redo.target == j || (redo.crossed[j] && (heads || jumps))", "redo.target == j",
               "functions fire together if their crossings cannot be told apart"),
@@ -156,28 +163,102 @@ def stale_mutations():
     return stale
 
 
-def first_failure(site, python, work):
-    """The test that fails first with the package in `site`; None if none does."""
-    command = [python, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "--tb=line"]
-    command += [str(ROOT / "python/tests" / test) for test in TESTS]
-    environment = {**os.environ, "PYTHONPATH": str(site), "MYRIAD_TEST_COMPILED": "1", "PYTHONDONTWRITEBYTECODE": "1"}
+class CompiledPrograms:
+    """C++ test programs of a build folder, whose objects are compiled anew with a changed header."""
+
+    def __init__(self, build):
+        self.build = build
+        self.commands = {}
+        for program in PROGRAMS:
+            *compilations, link = re.sub(r" -include \S*cmake_pch.hxx", "",
+                                         self.ninja("commands", f"tests/{program}")).splitlines()
+            own = {re.search(r" -o (\S+\.o) ", line)[1]: line for line in compilations if f"/{program}.dir/" in line}
+            changed = {path: line for path, line in own.items() if HEADERS in self.ninja("deps", path)}
+            if not changed:
+                sys.exit(f"{program} is not built in {build}, or without {HEADERS}.")
+            self.commands[program] = (changed, link)
+
+    def ninja(self, tool, target):
+        return subprocess.run(["ninja", "-C", self.build, "-t", tool, target], capture_output=True, text=True,
+                              check=True).stdout
+
+    def first_failure(self, mutation, work, options):
+        overlay = work / "overlay/myriad/kernel/event"
+        overlay.mkdir(parents=True)
+        shutil.copy(ROOT / HEADERS / mutation[0], overlay)
+        headers.change(mutation, overlay)
+        for program, (compilations, link) in self.commands.items():
+            for path, line in compilations.items():
+                before, compiler, arguments = re.fullmatch(r"((?:\S*ccache )?)(\S+) (.*)", line).groups()
+                made = work / path.replace("/", "_")
+                self.shell(f"{before}{compiler} -I{work / 'overlay'} {arguments} -w".replace(f" {path}", f" {made}"))
+                link = link.replace(f" {path}", f" {made}")
+            self.shell(re.sub(r" -o \S+", f" -o {work / program}", link))
+            done = run([str(work / program)], options, cwd=self.build)
+            if isinstance(done, str) or done.returncode:
+                return f"{program}{f', {done}' if isinstance(done, str) else ''}"
+        return None
+
+    def shell(self, command):
+        done = subprocess.run(command, shell=True, capture_output=True, text=True, cwd=self.build)
+        if done.returncode:
+            sys.exit(f"{command}\n{done.stderr[-3000:]}")
+
+
+class Package:
+    """Python tests of an installed package, whose models are compiled with a changed header."""
+
+    def __init__(self, site):
+        self.site = site
+
+    def first_failure(self, mutation, work, options):
+        site = work / "site"
+        shutil.copytree(self.site, site, copy_function=os.link)
+        folder = site / "myriad_ode" / HEADERS
+        (folder / mutation[0]).unlink()
+        shutil.copy(ROOT / HEADERS / mutation[0], folder)
+        headers.change(mutation, folder)
+        command = [options.python, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "--tb=line"]
+        command += [str(ROOT / "python/tests" / test) for test in TESTS]
+        folders = os.pathsep.join(filter(None, [str(site), os.environ.get("PYTHONPATH")]))
+        done = run(command, options, cwd=work, env={**os.environ, "PYTHONPATH": folders, "MYRIAD_TEST_COMPILED": "1",
+                                                    "PYTHONDONTWRITEBYTECODE": "1"})
+        if isinstance(done, str) or done.returncode == 0:
+            return done if isinstance(done, str) else None
+        failed = re.search(r"^(?:FAILED|ERROR) \S*?([^/\s]+::.*)$", done.stdout, re.MULTILINE)
+        if failed is None or "the model does not compile" in done.stdout:
+            sys.exit(f"The tests did not run:\n{done.stdout[-3000:]}{done.stderr[-1000:]}")
+        return failed[1][:200]
+
+
+def run(command, options, **how):
+    """The finished process, or what made it end."""
     try:
-        done = subprocess.run(command, capture_output=True, text=True, cwd=work, env=environment, timeout=SECONDS)
+        done = subprocess.run(command, capture_output=True, text=True, timeout=options.seconds, **how)
     except subprocess.TimeoutExpired:
-        return f"no end within {SECONDS} s"
-    if done.returncode <= 0:
-        return f"a crash, signal {-done.returncode}" if done.returncode else None
-    failed = re.search(r"^(?:FAILED|ERROR) \S*?([^/\s]+::.*)$", done.stdout, re.MULTILINE)
-    if failed is None or "the model does not compile" in done.stdout:
-        sys.exit(f"The tests did not run:\n{done.stdout[-3000:]}{done.stderr[-1000:]}")
-    return failed[1][:200]
+        return f"no end within {options.seconds} s"
+    return f"a crash, signal {-done.returncode}" if done.returncode < 0 else done
+
+
+def verdict(name, tests, options):
+    """Whether the tests find the mutation, and what it says of that."""
+    with tempfile.TemporaryDirectory(prefix=f"myriad-{name}-", dir=options.work) as folder:
+        found = next(filter(None, (test.first_failure(MUTATIONS[name], pathlib.Path(folder), options)
+                                   for test in tests)), None)
+    says = "NOT FOUND" if found is None else f"found by {found}"
+    print(f"{name} ({MUTATIONS[name][3]}): {says}", flush=True)
+    return found is not None
 
 
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--check", action="store_true", help="only whether each text stands in its header once")
+    parser.add_argument("--build", type=pathlib.Path, help="a build folder with the C++ tests")
     parser.add_argument("--site", type=pathlib.Path, help="a folder with an installed package")
     parser.add_argument("--only", help="names of mutations")
+    parser.add_argument("--jobs", type=int, default=1, help="mutations at a time")
+    parser.add_argument("--seconds", type=float, default=1500, help="after which a test's run counts as without end")
+    parser.add_argument("--work", help="a folder for temporary files, on the file system of --site")
     parser.add_argument("--python", default=sys.executable)
     options = parser.parse_args()
     stale = stale_mutations()
@@ -187,20 +268,12 @@ def main():
         return 0
     names = options.only.split(",") if options.only else list(MUTATIONS)
     unknown = [name for name in names if name not in MUTATIONS]
-    if unknown or options.site is None:
-        parser.error(f"there is no mutation {unknown[0]}" if unknown else "give --site")
-    missed = 0
-    with tempfile.TemporaryDirectory(prefix="myriad-mutations-") as folder:
-        site = pathlib.Path(folder) / "site"
-        shutil.copytree(options.site, site)
-        shutil.copytree(ROOT / "include", site / "myriad_ode/include", dirs_exist_ok=True)
-        for name in names:
-            path, content = headers.change(MUTATIONS[name], site / "myriad_ode" / HEADERS)
-            found = first_failure(site, options.python, folder)
-            path.write_text(content)
-            missed += found is None
-            verdict = "NOT FOUND" if found is None else f"found by {found}"
-            print(f"{name} ({MUTATIONS[name][3]}): {verdict}", flush=True)
+    if unknown or not (options.build or options.site):
+        parser.error(f"there is no mutation {unknown[0]}" if unknown else "give --build or --site")
+    tests = [CompiledPrograms(options.build.resolve())] if options.build else []
+    tests += [Package(options.site.resolve())] if options.site else []
+    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+        missed = list(pool.map(lambda name: verdict(name, tests, options), names)).count(False)
     print(f"{len(names)} mutations, {missed} not found")
     return 1 if missed else 0
 

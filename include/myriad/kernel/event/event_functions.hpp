@@ -135,7 +135,8 @@ MYRIAD_RARE_FUNCTION void find_first_signs(event_place<Model, R>* path) {
     const R least = max(R(64) * epsilon_of<R> * (abs(path->t) + abs(path->h)), R(smallest_normal_of<R>));
     path->length = copysign(max(least, path->first), path->h);
     MYRIAD_ROLLED
-    while (abs(path->length) * R(64) <= abs(path->t) + abs(path->h)) {
+    const R most = R(1.0 / 64) * abs(path->t) + R(1.0 / 64) * abs(path->h);  // finite, so that the search ends
+    while (abs(path->length) <= most) {
         MYRIAD_OPTIMISATION_BARRIER(path);  // else what it points to occupies registers throughout
         const R length = path->length;
         MYRIAD_UNROLL

@@ -91,7 +91,6 @@ struct event_location {
         scratch.crosses.clear();
         if constexpr (!Nearness::is_plain) {
             if (!again) {
-                scratch.alone = false;
                 detail::look_around(&scratch, &own, true);
                 detail::find_headings_without_slope(&scratch);
             }

@@ -67,7 +67,6 @@ struct event_scratch {
     // of the functions at one end of the step, with their values in the middle of it
     vec<R, n_event<Model>> tolerance, slope, heading, middle;
     mask_set<bool, n_event<Model>> crosses;
-    bool alone;  // no other crosses, so that only slopes are needed
     bool flat;   // one of them has no slope that tells where it goes
     std::int32_t function;
 };
@@ -96,7 +95,6 @@ MYRIAD_RARE_FUNCTION void look_around(event_scratch<Model, R>* at, const event_m
     at->slope = detail::event_slopes<Model>(place.t, place.y, place.slope, place.p);
     at->crosses.clear();
     at->flat = false;
-    if (at->alone) return;
     MYRIAD_ROLLED
     for (at->function = 0; at->function < MYRIAD_LENGTH(n_event<Model>); ++at->function) {
         MYRIAD_OPTIMISATION_BARRIER(at);  // else what it points to occupies registers throughout

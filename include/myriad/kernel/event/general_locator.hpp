@@ -160,7 +160,6 @@ private:
         slope = heading = middle = step.g1;
         here.clear();
         if (!reached.is_plain()) {
-            found.alone = !reached.others && reached.all_left;
             detail::look_around(&found, &own, false);
             detail::find_headings_without_slope(&found);
             if (!reached.all_left) middle = step.values_at(R(0.5));

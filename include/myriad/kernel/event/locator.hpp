@@ -101,26 +101,31 @@ private:
         return true;
     }
     /// Whether a trial does what nearly all do that come here: one function, of those in `crossed`, has crossed, or
-    /// the step ends close to its event. That can be told without the rounding errors of the event functions if these
-    /// are smaller than tolerances that were given: every function has a side and is beyond its tolerance, or at the
-    /// event. One that has not left its surface since its event must be on the side that it was heading for.
+    /// the step was redone to end at an event of one function and ends near it or short of it. That can be told
+    /// without the rounding errors of the event functions if these are smaller than tolerances that were given: every
+    /// function has a side and is beyond its tolerance, or near the event. One that has not left its surface since its
+    /// event must be on the side that it was heading for.
     MYRIAD_FUNCTION bool is_plain(int i, const ends_of_step& step, flags& crossed) const {
         const auto& own = sides.memory_of(i);
+        const bool seeking = sides.is_locating(i) && own.redo.target != own.redo.none;
         bool plain = sides.args.sub_samples <= 1 && !(own.open | own.on_jump).any_of();
-        bool arrives = false, others = false;
+        bool alone = seeking, close = false;
         MYRIAD_UNROLL
         for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
             const R tolerance = sides.args.event[j].tolerance, g = abs(step.g1[j]);
             const bool left = sides.e.left.get(j, i), stays = (step.g1[j] > R(0)) == sides.e.above.get(j, i);
-            const bool is_target = own.redo.target == j;
-            const bool here = sides.is_locating(i) && is_target && left && g <= R(arrival_part) * own.redo.tolerance[j];
-            plain = plain && tolerance > R(0) && (here || (g > tolerance && (left || stays)));
-            arrives = arrives || here;
-            others = others || !left || (!is_target && own.redo.crossed[j]);
-            if (here) crossed.set(j, false);
+            const bool is_target = seeking && own.redo.target == j;
+            const bool near = is_target && left && g <= own.redo.tolerance[j];
+            plain = plain && tolerance > R(0) && (near || (g > tolerance && (left || stays)));
+            close = close || (near && is_close(g, own.redo.tolerance[j]));
+            alone = alone && left && (is_target || !own.redo.crossed[j]);
+            if (near) crossed.set(j, false);
         }
-        return plain && (crossed.any_of() ? !crossed.several() : arrives && !others);
+        if (!plain) return false;
+        return crossed.any_of() ? !crossed.several() : alone && (close || own.redo.trusts_guesses(step.h));
     }
+    /// Whether a better guess is not worth another trial.
+    static MYRIAD_FUNCTION bool is_close(R gap, R tolerance) { return gap <= R(arrival_part) * tolerance; }
     /// Locates the event of a trial for which `is_plain` holds.
     MYRIAD_FUNCTION trial_outcome locate_plain(int i, ends_of_step& step, const trial_ends<Model, S>& ends,
                                                const flags& crossed, fired& events) const {
@@ -131,13 +136,30 @@ private:
             for (int j = 0; j < MYRIAD_LENGTH(m); ++j) side[j] = sides.e.above.get(j, i) ? R(1) : R(-1);
             step.g = detail::evaluate_events<Model>(step.t, step.y, step.p);
             location{sides}.evaluate_end_slope(i, step, ends);
-            location{sides}.begin_or_shorten(i, step, side, crossed, step_part<R>{},
-                                             plain_nearness<Model, R>{sides.args}, events);
+            location{sides}.begin_or_shorten(i, step, side, crossed, step_part<R>{}, plain_nearness<Model, R>{sides.args}, events);
             return trial_outcome::is_redone;
+        }
+        auto& redo = own.redo;
+        const R g = detail::element(step.g1, redo.target), tolerance = redo.tolerance[redo.target];
+        if (!is_close(abs(g), tolerance)) {
+            location{sides}.evaluate_end_slope(i, step, ends);
+            const R guess = step.h - g * reciprocal(detail::element(step.slopes1(), redo.target));
+            const flags above = sides.e.above.of_lane(i);  // a copy, else all sides would lie in memory for the index
+            const bool before = (g > R(0)) == above[redo.target];
+            bool further = abs(g) > tolerance;
+            if (further) {
+                redo.lengthen(step.h, guess);
+            } else {
+                further = redo.improve(step.h, guess, before);
+            }
+            if (further) {
+                location{sides}.redo_step(i);
+                return trial_outcome::is_redone;
+            }
         }
         own.at_jump.clear();
         MYRIAD_UNROLL
-        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) events.put(j, i, own.redo.target == j, step.g1[j]);
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) events.put(j, i, redo.target == j, step.g1[j]);
         location{sides}.end(i);
         return trial_outcome::stands_before_sides;
     }

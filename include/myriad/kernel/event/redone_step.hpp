@@ -73,6 +73,8 @@ struct redone_step {
     MYRIAD_FUNCTION bool goes_by_signs(int j, R rounding) const {
         return tries >= most_guesses && tolerance[j] <= rounding;
     }
+    /// Whether guesses still choose the next length after a trial of length h.
+    MYRIAD_FUNCTION bool trusts_guesses(R h) const { return tries < most_guesses && !is_between(h); }
     /// Whether the event, up to rounding, is where a redone step of length h ended before it.
     MYRIAD_FUNCTION bool is_between(R h) const { return are_one(h, beyond); }
     /// A redone step of length h ended before the event.
