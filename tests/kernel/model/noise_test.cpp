@@ -221,8 +221,10 @@ TEST_CASE("a diffusion is found to be additive, and to depend on each state's ow
     CHECK_FALSE(is_additive<solvable>);
     CHECK_FALSE(dependence_of_noise<solvable>.on_other_states);
     CHECK(dependence_of_noise<sharing>.on_other_states);
+    CHECK(is_additive<noisy::additive>);
     CHECK(n_wiener<solvable> == 3);
     CHECK(n_wiener<sharing> == 2);
+    CHECK_THAT(myriad::describe<sharing>(), Contains("hooks: rhs, diffusion (2 processes)"));
 }
 
 TEST_CASE("steps that a path has no places for are refused, and its options without a diffusion") {
@@ -234,7 +236,7 @@ TEST_CASE("steps that a path has no places for are refused, and its options with
     CHECK_THAT(message({.step = 1e-7, .noise_step = 0.1}), Contains("nor a number of 65536ths of it"));
     CHECK_THAT(message({.step = 0.1, .noise_step = -1}),
                Contains("noise_step is -1 (must not be negative, and finite)"));
-    CHECK_THAT(message({.step = 0.1, .seed = -1}), Contains("seed is -1 (must be from 0 to 9e"));
+    CHECK_THAT(message({.step = 0.1, .seed = -1}), Contains("seed is -1 (must be from 0 to 4294967295)"));
     CHECK_THAT(message({.phases = 1, .step = 1}), Contains("nothing was thrown"));
     auto long_ones = start<float>(1, 0, 1e6F);
     CHECK_THAT(tests::message_of([&] {

@@ -143,7 +143,7 @@ struct options {
     /// The first step of a phase.
     myriad::phase_step phase_step = myriad::phase_step::restart;
 
-    /// The seed of the paths of a stochastic equation (`diffusion`).
+    /// The seed of the paths of a stochastic equation (`diffusion`), from 0 to 2^32 - 1.
     std::int64_t seed = 0;
     /// The cells of these paths, in time: steps that are a multiple of one, or a number of 65536ths of one, follow the
     /// same path. 0: the step.

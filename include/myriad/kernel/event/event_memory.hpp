@@ -67,7 +67,7 @@ struct event_scratch {
     // of the functions at one end of the step, with their values in the middle of it
     vec<R, n_event<Model>> tolerance, slope, heading, middle;
     mask_set<bool, n_event<Model>> crosses;
-    bool flat;   // one of them has no slope that tells where it goes
+    bool flat;  // one of them has no slope that tells where it goes
     std::int32_t function;
 };
 template <class Model, class R>

@@ -136,7 +136,8 @@ private:
             for (int j = 0; j < MYRIAD_LENGTH(m); ++j) side[j] = sides.e.above.get(j, i) ? R(1) : R(-1);
             step.g = detail::evaluate_events<Model>(step.t, step.y, step.p);
             location{sides}.evaluate_end_slope(i, step, ends);
-            location{sides}.begin_or_shorten(i, step, side, crossed, step_part<R>{}, plain_nearness<Model, R>{sides.args}, events);
+            location{sides}.begin_or_shorten(i, step, side, crossed, step_part<R>{},
+                                             plain_nearness<Model, R>{sides.args}, events);
             return trial_outcome::is_redone;
         }
         auto& redo = own.redo;

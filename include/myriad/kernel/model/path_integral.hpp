@@ -10,7 +10,7 @@
 namespace myriad::detail::inline MYRIAD_TARGET {
 
 /// Increments of processes and the integrals of what they are along the way.
-template <class S, extent processes>
+template <class S, int processes>
 struct increments_with_integrals {
     vec<S, processes> increment, integral;
 };
@@ -120,7 +120,7 @@ MYRIAD_CALLED_FUNCTION increments_with_integrals<S, normals_per_block<real_of<S>
 
 /// The increments of so many processes over a step, and the integrals of W(s) - W(from) over it. At the ends of cells
 /// the path is that of `path_increments`; within one it is another.
-template <extent processes, class S>
+template <int processes, class S>
 MYRIAD_FUNCTION increments_with_integrals<S, processes> path_integrals(const path_interval<S>& over) {
     using R = real_of<S>;
     constexpr int per_group = normals_per_block<R>;

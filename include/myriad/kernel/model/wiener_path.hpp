@@ -167,7 +167,7 @@ MYRIAD_FUNCTION bool is_one_cell(const path_interval<S>& over) {
 
 /// The increments of so many processes over a step. The same bits whichever way they are computed: lanes of a pack are
 /// neighbours only.
-template <extent processes, class S>
+template <int processes, class S>
 MYRIAD_FUNCTION vec<S, processes> path_increments(const path_interval<S>& over) {
     using small = typename path_integers<S>::small;
     constexpr int per_group = normals_per_block<real_of<S>>;
