@@ -5,6 +5,7 @@
 #include "myriad/kernel/core/macros.hpp"
 #include "myriad/kernel/core/vec.hpp"
 #include "myriad/kernel/methods/stochastic_method.hpp"
+#include "myriad/kernel/scalar/math.hpp"
 
 namespace myriad {
 
