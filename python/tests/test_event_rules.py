@@ -6,14 +6,15 @@ import pytest
 
 import myriad_ode as my
 
-x, v = my.states("x v")
+x, v, y = my.states("x v y")
+w = my.parameter("w")
 n, k = my.integer_accessory("n"), my.integer_accessory("k")
 at = my.accessory("at")
 
 
-def solved(equations, events, accessories, **options):
-    return my.solve(my.model(equations, events=events, accessories=accessories), device="cpu:1", interpreted=True,
-                    **options)
+def solved(equations, events, accessories, sweep=None, **options):
+    return my.solve(my.model(equations, events=events, accessories=accessories), sweep or {}, device="cpu:1",
+                    interpreted=True, **options)
 
 
 def test_at_the_end_of_the_domain_an_event_fires_that_steps_may_have_missed_by_their_rounding():
@@ -83,3 +84,83 @@ def test_a_function_that_crosses_in_a_direction_not_asked_for_in_a_step_from_a_s
     run = solved({x: v, v: -1.0}, events, {n: 0, k: 0}, size=1, start={x: 0.0, v: 2.0}, time=(0, 3.8),
                  method="runge_kutta_4", step=1.9)
     assert (run[n][0], run[k][0]) == (1, 0)
+
+
+def test_a_function_that_rests_at_zero_and_goes_back_has_not_crossed():
+    run = solved({x: v, v: -1.0}, my.event(my.minimum(x, 0), direction="falling", do={n: n + 1}), {n: 0}, size=1,
+                 start={x: -0.3, v: 1.0}, time=(0, 2), method="runge_kutta_4", step=0.125)
+    assert run[n][0] == 0
+
+
+def test_a_difference_whose_terms_cancel_has_their_rounding_error():
+    phase = np.linspace(0, 6, 100)
+    run = solved({x: my.sin(my.time + w), y: my.cos(my.time + w - np.pi / 2)}, my.event(x - y, do={n: n + 1}), {n: 0},
+                 {w: phase}, start={x: 1.0, y: 1.0}, time=(0, 1), method="runge_kutta_4", step=0.25)
+    assert np.any(run[x] != run[y]) and not np.any(run[n])
+
+
+@pytest.mark.parametrize("samples", [1, 2])
+def test_a_step_that_ends_within_the_tolerance_of_its_event_is_improved(samples):
+    run = solved({x: w * (1.5 + my.sin(3 * x))}, my.event(x - 1, do={at: x}, tolerance=0.01), {at: 0},
+                 {w: np.linspace(1, 3, 200)}, start={x: 0.0}, time=(0, 2), method="runge_kutta_4", step=0.25,
+                 sub_samples=samples)
+    error = np.abs(run[at] - 1)
+    assert np.max(error) < 0.0011
+
+
+@pytest.mark.parametrize("method", ["tsitouras_5", "cash_karp", "rodas_5p"])
+@pytest.mark.parametrize("tolerance", [0, 1e-10, 1e-6])
+def test_events_of_smooth_functions_are_located_in_few_trials(method, tolerance):
+    run = solved({x: v, v: -1.0}, my.event(x, direction="falling", do={v: -v, n: n + 1}, tolerance=tolerance), {n: 0},
+                 size=50, start={x: 1.0, v: np.linspace(0, 1, 50)}, time=(0, 40), method=method)
+    assert np.sum(run.located_steps) <= (6 if tolerance == 0 else 1.5) * np.sum(run[n])
+
+
+def test_of_two_events_in_one_step_the_first_is_located_first():
+    events = [my.event(x - 0.9, do={n: n + 1}), my.event(x - 0.1, do={k: k + 1})]
+    run = solved({x: 1.0}, events, {n: 0, k: 0}, size=1, start={x: 0.0}, time=(0, 1), method="runge_kutta_4", step=1.0)
+    assert (run[n][0], run[k][0]) == (1, 1) and run.located_steps[0] == 2
+
+
+def test_an_event_where_a_step_begins_takes_one_trial():
+    run = solved({x: -1.0}, my.event(x, do={n: n + 1}), {n: 0}, size=1, start={x: 1.0}, time=(0, 2),
+                 method="runge_kutta_4", step=0.25)
+    assert run[n][0] == 1 and run.located_steps[0] == 1
+
+
+def test_a_crossing_at_the_very_start_of_an_enormous_step_is_found():
+    run = solved({x: 1.0}, my.event(my.exp(my.exp(x)) - 3, do={n: n + 1, at: my.time}), {n: 0, at: 0}, size=1,
+                 start={x: 0.0}, time=(0, 1e200), method="runge_kutta_4", step=1e200)
+    assert run[n][0] == 1 and abs(run[at][0] - np.log(np.log(3))) < 1e-12
+
+
+def test_what_an_action_moves_past_zero_within_the_tolerance_is_past_zero():
+    run = solved({x: 1.0}, my.event(x, do={x: x - 0.05, n: n + 1}, tolerance=0.1), {n: 0}, size=1, start={x: -1.0},
+                 time=(0, 1.2), method="runge_kutta_4", step=0.1)
+    assert run[n][0] > 1
+
+
+def test_what_an_action_moves_beside_another_surface_by_the_error_of_location_goes_where_it_heads():
+    events = [my.event(my.sin(x) - 0.5, do={y: x - np.arcsin(0.5)}, tolerance=1e-4), my.event(y, do={n: n + 1})]
+    run = solved({x: w, y: 1.0}, events, {n: 0}, {w: np.linspace(1, 3, 100)}, start={x: 0.0, y: 5.0}, time=(0, 0.8),
+                 method="runge_kutta_4", step=0.1)
+    assert not np.any(run[n])
+
+
+def test_what_a_stop_puts_on_a_surface_up_to_rounding_goes_where_it_heads():
+    model = my.model({x: 1.0}, events=my.event(x - 1, do={n: n + 1}), accessories={n: 0},
+                     stops=my.stop(0.5, do={x: 1 - 2.0**-53}))
+    run = my.solve(model, size=1, start={x: 3.0}, time=(0, 1), device="cpu:1", interpreted=True)
+    assert run[x][0] == pytest.approx(1.5) and run[n][0] == 0
+
+
+def test_a_touch_is_found_where_the_function_turns():
+    run = solved({x: v, v: -1.0}, my.event(x - (0.5 - 1e-8), do={n: n + 1}), {n: 0}, size=1, start={x: 0.0, v: 1.0},
+                 time=(0, 3), method="runge_kutta_4", sub_samples=2, step=0.3)
+    assert run[n][0] == 2
+
+
+def test_a_touch_is_found_where_the_cubic_through_a_long_step_is_too_coarse():
+    run = solved({x: v, v: -x}, my.event(x - (1 - 1e-8), do={n: n + 1}), {n: 0}, size=1, start={x: 0.0, v: 1.0},
+                 time=(0, 3), method="tsitouras_5", sub_samples=2, rtol=1e-7, atol=1e-7)
+    assert run[n][0] == 2

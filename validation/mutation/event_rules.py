@@ -61,10 +61,9 @@ MUTATIONS = {
                          "length = is_inside(guess, h) ? guess : middle;", "bisection after ten trials"),
     "first_within_tolerance": ("general_locator.hpp", "redo.improve(step.h, guess, reached.gap > R(0))", "false",
                                "a step within the tolerance is improved"),
-    "root_at_start_kept": ("earliest_crossing.hpp", "detail::crossing_fraction(g, !on_side, R(guess_part) * close)",
-                           "detail::crossing_fraction(g, false, R(guess_part) * close)",
-                           "a root at the start is divided out"),
-    "crosses_at_start": ("earliest_crossing.hpp", "if (!on_side && (g.slope < R(0) || (left && g.slope == R(0)))) "
+    "started_at_the_secant": ("crossing.hpp", "x = max(x, b * reciprocal(b + fall));", "",
+                              "from where a function rises, the guess is its return"),
+    "crosses_at_start": ("earliest_crossing.hpp", "if (!(g.value > R(0)) && (g.slope < R(0) || (left && g.slope == R(0)))) "
                          "return R(0);", "", "a function past zero at the start that goes on crosses there"),
     "last_of_events": ("earliest_crossing.hpp", "if (x < first.fraction) first", "if (x > first.fraction || "
                        "first.fraction > R(1)) first", "the earliest crossing is located first"),
@@ -129,6 +128,9 @@ MUTATIONS = {
                         "values within four roundings of t after an event do not count as leaving"),
     "lingers_for_ever": ("event_driver.hpp", "e_.left.get(j, i) ? 1 : lingered + 1", "1", "actions that do not leave "
                          "the surface are counted"),
+    "crosses_before_it_left": ("general_locator.hpp", "!e.left.get(j, i) && side[j] * heading[j] > R(0);",
+                               "!e.left.get(j, i) && side[j] * heading[j] > R(0) && reached.gap >= R(0);",
+                               "what returns from past its surface has not crossed it"),
     "leaves_at_once": ("general_locator.hpp", "leaves = !reached.all_left && !e.left.get(j, i)",
                        "leaves = false && !e.left.get(j, i)", "a function leaves before it crosses again"),
     # The end of the domain

@@ -15,7 +15,7 @@ using myriad::detail::function_ends;
 
 template <class R>
 R crossing_from_above(const function_ends<R>& g) {
-    return crossing_fraction(g, false, R(0));
+    return crossing_fraction(g, R(0));
 }
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -44,9 +44,21 @@ TEST_CASE("the crossing of a function that is no cubic is off by the fourth powe
 
 TEST_CASE("a flight from the surface and back has the length that its speed and acceleration give") {
     for (const double flight : {1e-12, 1e-3, 0.5, 0.99}) {
-        CAPTURE(flight);
-        const function_ends<double> g{0, flight, flight - 1, flight - 2};  // x (flight - x)
-        CHECK(std::abs(crossing_fraction(g, true, 0.0) - flight) <= 4 * epsilon);
+        for (const double start : {0.0, 1e-17, -1e-17}) {
+            CAPTURE(flight, start);
+            const function_ends<double> g{start * flight, flight, flight - 1, flight - 2};  // x (flight - x)
+            CHECK(std::abs(crossing_fraction(g, 0.0) - flight) <= 4 * epsilon);
+        }
+    }
+}
+
+TEST_CASE("a flat flight from the surface and back has the length that its slopes give") {
+    for (const double flight : {1e-3, 0.5, 0.99}) {
+        for (const double slope : {0.0, 1e-30, 1e-20}) {
+            CAPTURE(flight, slope);
+            const function_ends<double> g{-1e-46, slope, flight - 1, 2 * flight - 3};  // x^2 (flight - x)
+            CHECK(std::abs(crossing_fraction(g, 0.0) - flight) <= 4 * epsilon);
+        }
     }
 }
 

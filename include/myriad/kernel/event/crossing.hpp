@@ -21,14 +21,19 @@ struct function_ends {
 /// as that.
 inline constexpr double arrival_part = 0.1, guess_part = 0.01, largest_part = 1.0 / 64;
 
-/// The root, 0 < x < 1, of the cubic a + x (b + x (c + x d)), which is positive at 0 and negative at 1: Newton's
-/// method, safeguarded by bisection, until the value is within `close` of zero. Six iterations are enough for a guess.
+/// The root, 0 < x < 1, of the cubic a + x (b + x (c + x d)), which is positive at 0, or rises from zero there, and is
+/// negative at 1: Newton's method, safeguarded by bisection, until the value is within `close` of zero. Six iterations are enough for a guess.
 /// Returns 1/2 if the coefficients are not finite.
 template <class R>
 MYRIAD_FUNCTION R cubic_root(R a, R b, R c, R d, R close) {
     constexpr R last = R(1) - R(4) * epsilon_of<R>;
     R low = R(0), high = R(1);
-    R x = a * reciprocal(a - (((a + b) + c) + d));  // the secant
+    const R fall = a - (((a + b) + c) + d);  // from one end to the other
+    R x = a * reciprocal(fall);  // the secant
+    if (b >= R(0)) {  // where it rises from zero: those without a, divided by x, and without b, divided by x again
+        x = max(x, b * reciprocal(b + fall));
+        if (c > R(0)) x = max(x, c * reciprocal(-d));
+    }
     MYRIAD_ROLLED
     for (int i = 0; i < 6; ++i) {
         if (!(x > low && x < high)) x = R(0.5) * (low + high);
@@ -50,14 +55,13 @@ MYRIAD_FUNCTION R cubic_root(R a, R b, R c, R d, R close) {
 }
 
 /// The fraction of the step at which the function crosses zero, to within `close`: a root of the cubic through both
-/// ends (Hairer, Norsett, Wanner, Solving ODE I, II.6, eq. (6.7)). If the step starts on the surface and the function
-/// leaves it, the fraction at which it returns: the root at 0 is divided out.
+/// ends (Hairer, Norsett, Wanner, Solving ODE I, II.6, eq. (6.7)). Where it rises from its surface, that at which it
+/// returns.
 template <class R>
-MYRIAD_FUNCTION R crossing_fraction(const function_ends<R>& g, bool leaves, R close) {
+MYRIAD_FUNCTION R crossing_fraction(const function_ends<R>& g, R close) {
     const R rise = g.end_value - g.value;
-    const R square = R(3) * rise - R(2) * g.slope - g.end_slope, cube = g.slope + g.end_slope - R(2) * rise;
-    return detail::cubic_root(leaves ? g.slope : g.value, leaves ? square : g.slope, leaves ? cube : square,
-                              leaves ? R(0) : cube, leaves ? R(0) : close);
+    return detail::cubic_root(g.value, g.slope, R(3) * rise - R(2) * g.slope - g.end_slope,
+                              g.slope + g.end_slope - R(2) * rise, close);
 }
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET

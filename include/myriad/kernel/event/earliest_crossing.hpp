@@ -51,12 +51,11 @@ MYRIAD_FUNCTION R element(const vec<R, m>& values, int j) {
 /// The fraction of a step at which an event function crosses, from the cubic through its values and slopes at both
 /// ends, which have the signs of a function that falls. One whose sign at the start is not that of its side, as right
 /// after its event, crosses there if it goes on, and where it returns if it goes to its side. Without a slope it goes
-/// on if it has `left` the surface since its event, and has come to it again.
+/// on if it has `left` the surface since its event, and has come to it again. A flight may stay within `close` of zero.
 template <class R>
 MYRIAD_FUNCTION R fraction_at(const function_ends<R>& g, bool left, R close) {
-    const bool on_side = g.value > R(0);
-    if (!on_side && (g.slope < R(0) || (left && g.slope == R(0)))) return R(0);
-    return detail::crossing_fraction(g, !on_side, R(guess_part) * close);
+    if (!(g.value > R(0)) && (g.slope < R(0) || (left && g.slope == R(0)))) return R(0);
+    return detail::crossing_fraction(g, g.slope > R(0) ? R(0) : R(guess_part) * close);
 }
 
 /// The earliest crossing in a step. `side` is the side of zero each function was on, and `tolerance` how closely the

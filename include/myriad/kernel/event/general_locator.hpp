@@ -165,16 +165,17 @@ private:
             if (!reached.all_left) middle = step.values_at(R(0.5));
         }
         R approach = R(0);
-        // It leaves the surface where it fired last, so that its crossing is later, however near it is to zero.
+        // It leaves the surface where it fired last, so that its crossing is later, however near it is to zero, and
+        // maybe still past it.
         bool leaves = false;
         MYRIAD_UNROLL
         for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
             if (redo.target != j) continue;
             approach = side[j] * slope[j];
-            leaves = !reached.all_left && !e.left.get(j, i) && reached.gap >= R(0) && side[j] * heading[j] > R(0);
+            leaves = !reached.all_left && !e.left.get(j, i) && side[j] * heading[j] > R(0);
         }
         if (!reached.is_close() || leaves) {
-            const R guess = step.h - reached.gap * reciprocal(approach);
+            const R guess = leaves ? step.h : step.h - reached.gap * reciprocal(approach);
             const bool short_of_it = reached.gap > reached.band || leaves;
             bool further = short_of_it && !narrow && redo.tries < redo.most_trials;
             if (further) {
