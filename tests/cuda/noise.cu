@@ -3,7 +3,7 @@
 //
 //
 // limit: integrate_ensemble<solvable, milstein> registers 144 stack 0 spill 0
-// limit: integrate_ensemble<additive, sra1> registers 144 stack 0 spill 0
+// limit: integrate_ensemble<additive, sra1> registers 152 stack 40 spill 0
 
 #include <myriad/cuda/kernel.cuh>
 #include <myriad/methods.hpp>
