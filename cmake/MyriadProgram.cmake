@@ -55,6 +55,7 @@ myriad_write_model_flags("${PROJECT_BINARY_DIR}/installed_model_flags.txt" "${re
 # What draws, of which the Python package has the pictures themselves.
 set(myriad_plot_scripts "${PROJECT_SOURCE_DIR}/src/program/plot.py" "${PROJECT_SOURCE_DIR}/examples/common/figure.py")
 set(myriad_plot_pictures "${PROJECT_SOURCE_DIR}/python/myriad_ode/base/plots.py"
+    "${PROJECT_SOURCE_DIR}/python/myriad_ode/base/plot_parts.py"
     "${PROJECT_SOURCE_DIR}/python/myriad_ode/base/errors.py")
 foreach(script IN LISTS myriad_plot_scripts myriad_plot_pictures)
     cmake_path(GET script FILENAME name)

@@ -23,8 +23,8 @@ def draw(pyplot, _numpy, table, _comments):
     figure, (upper, lower) = pyplot.subplots(2, 1, sharex=True, figsize=(7.2, 5), height_ratios=(2, 1),
                                              layout="constrained")
     upper.axhline(0, color="0.6", linewidth=0.6)
+    upper.plot(rho, table["lambda_1"], linewidth=0.7, color="#10305a", label=r"$\lambda_1$", zorder=3)
     upper.plot(rho, table["lambda_2"], linewidth=0.7, color="#c05020", label=r"$\lambda_2$")
-    upper.plot(rho, table["lambda_1"], linewidth=0.7, color="#10305a", label=r"$\lambda_1$")
     upper.set_ylim(-1.5, None)
     upper.set_ylabel(r"$\lambda_1$, $\lambda_2$ (per unit of time)")
     upper.legend(loc="upper left", frameon=False)

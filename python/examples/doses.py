@@ -18,13 +18,12 @@ plt.savefig("doses_three.png")
 # end of snippet
 
 # snippet: map
-plt.figure()
 sweep = my.grid(dose=np.linspace(20, 200, 60), interval=np.linspace(4, 24, 41))
 run = my.solve(model, sweep, time=(0, 240), samples=np.linspace(192, 240, 200))
 table = run.to_xarray()  # with the axes dose and interval
 last_days = table["drug_sample"]
 safe = (last_days.max("sample") < 4) & (last_days.min("sample") > 0.5)
-safe.plot.pcolormesh(x="dose", y="interval")
+my.plots.parameter_map(table["dose"], table["interval"], safe, zlabel="safe")
 plt.savefig("doses.png")
 # end of snippet
 
@@ -33,18 +32,11 @@ body = {"clearance": my.normal(5, 1), "body": my.normal(40, 6), "absorption": my
 times = np.linspace(0, 72, 145)
 patients = my.study(model, body, draws=20_000, seed=1, time=(0, 72), samples=times,
                     keep=dict(end=[], samples=False, random=False),
-                    reduce=[my.reduce.mean("drug_sample"),
-                            my.reduce.quantiles("drug_sample", [0.05, 0.5, 0.95], my.linspace(0, 8, 401))])
+                    reduce=[my.reduce.quantiles("drug_sample", [0.05, 0.5, 0.95], my.linspace(0, 8, 401))])
 result = patients.run()
-low, median, high = result["drug_sample_quantiles"]
 
-plt.figure()
-plt.fill_between(times, low, high, alpha=0.3, label="90 % of patients")
-plt.plot(times, median, label="median")
-plt.plot(times, result["drug_sample_mean"], "--", label="mean")
-plt.xlabel(f"t ({model.time_unit})")
-plt.ylabel(f"drug ({model.units['drug']})")
-plt.legend()
+my.plots.bands(times, result["drug_sample_quantiles"], [0.05, 0.5, 0.95],
+               xlabel=f"t ({model.time_unit})", ylabel=f"drug ({model.units['drug']})")
 plt.savefig("doses_bands.png")
 # end of snippet
 
@@ -55,4 +47,5 @@ mean = last_days.sel(dose=100, interval=12, method="nearest")
 expected = float(mean["dose"]) / float(mean["interval"]) / 5
 assert abs(float(mean.mean()) / expected - 1) < 0.02, (float(mean.mean()), expected)
 assert 0 < int(safe.sum()) < safe.size
+low, median, high = result["drug_sample_quantiles"]
 assert np.all(np.diff([low, median, high], axis=0) >= 0) and high[-1] > 1.5 * low[-1] > 0

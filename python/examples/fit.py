@@ -34,6 +34,7 @@ assert fit.status[fit.index] == "converged" and not fit.at_bound and not fit.wit
 profile = fit.profile()
 print(profile)
 profile.plot()[0].figure.savefig("fit_profile.png")
+fit.plot()[0].figure.savefig("fit.png")
 fit.waterfall().figure.savefig("fit_waterfall.png")
 # end of snippet
 assert all(low < fit.best[name] < high for name, (low, high) in profile.intervals.items()) and not profile.notes

@@ -18,14 +18,11 @@ bounds = {contact: (0.3, 0.6), recovery: (0.05, 0.2), fading: (0, 0.01), infecte
 
 # snippet: sobol
 design = my.designs.sobol(bounds, 1024)  # 1024 (4 + 2) sets
-days = np.arange(5, 101, 5)
+days = np.arange(1, 101)
 simulate = my.batched(model, free=design.names, of=infected, start={susceptible: 1}, time=(0, 100), samples=days)
 indices = design.indices(simulate(design.points)[:, :, 0])  # of the share of infected on each day
-for name in design.names:
-    plt.plot(days, indices["total"][name], label=name)
-plt.legend()
-plt.xlabel("day")
-plt.ylabel("total index")
+my.plots.time_series(days, np.stack([indices["total"][name] for name in design.names]), labels=design.names,
+                     xlabel="day", ylabel="total index")
 plt.savefig("global_sensitivity.png")
 # end of snippet
 

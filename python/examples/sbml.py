@@ -20,7 +20,7 @@ set_to_v = my.solve(switch, sweep, start={"u": 0, "v": 5}, time=(0, 200), rtol=1
 
 table = set_to_u.to_xarray()  # with the axes alpha_u and alpha_v; "state", a rule of the file: (u - v) / (u + v)
 table["remembers"] = table["state_end"] - set_to_v.to_xarray()["state_end"] > 0.1
-table["remembers"].plot.pcolormesh(xscale="log", yscale="log")
+my.plots.parameter_map(strengths, strengths, table["remembers"], xlabel="alpha_u", ylabel="alpha_v")
 plt.savefig("sbml.png")
 # end of snippet
 

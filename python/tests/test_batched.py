@@ -71,6 +71,8 @@ def test_instances_that_failed_are_nan():
     (dict(free=[k, x], of=x, sweep={B: 0.5, k: 1}), "'k' is in free= and has a value in sweep="),
     (dict(free=[k, k], of=x), "name at least one component each"),
     (dict(free=["q"], of=x), "'q' is no component that free= can name"),
+    (dict(free=[k], of=x, start={"nope": 1}), "'nope' is no component of the model that start= can set: .*x, v"),
+    (dict(free=[k], of=x, sweep={"b": 1}), "'b' is no component of the model that the sweep can set: .*'B'"),
     (dict(free=[k], of=["q"]), "'q' is no state, accessory or output"),
     (dict(free=[k], of=x, size=3), "chooses size= itself"),
     (dict(free=[k], of=my.time, samples=3), "leave out samples="),

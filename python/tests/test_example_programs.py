@@ -13,6 +13,7 @@ import os
 import pathlib
 import re
 import subprocess
+import types
 
 import numpy as np
 import pytest
@@ -222,8 +223,8 @@ def test_poincare(run_sweep):
 @every
 def test_lyapunov(run_sweep):
     table = run_sweep("lyapunov", instances=37, transient=20, phases=40)
-    run = my.solve(my.with_tangents(example_models.lorenz(), 3),
-                   {"rho": table["rho"], "sigma": 10, "beta": 8 / 3, "transient_phases": 20},
+    run = my.solve(my.with_tangents(example_models.lorenz(), 3, transient_phases=20),
+                   {"rho": table["rho"], "sigma": 10, "beta": 8 / 3},
                    start={"x": 1, "y": 1, "z": 1}, time=(0, 0.25), phases=60, rtol=1e-8, atol=1e-8, carry_on_step=True,
                    method="tsitouras_5", device="cpu")
     exponents = my.exponents(run)
@@ -237,8 +238,8 @@ def test_lyapunov_map(run_sweep):
     call = dict(time=(0, tau), phases=18, rtol=1e-9, atol=1e-9, carry_on_step=True, method="dormand_prince_8",
                 device="cpu")
     values, start = {"k": table["k"], "B": table["B"]}, {"x": 1, "v": 0.1}
-    library = my.solve(my.with_tangents(example_models.forced_duffing()), {**values, "transient_phases": 6},
-                       start=start, **call)
+    library = my.solve(my.with_tangents(example_models.forced_duffing(), transient_phases=6), values, start=start,
+                       **call)
     assert np.array_equal(my.exponents(library)[:, 0], table["lambda_library"])
     begin = {name: library.start[f"{state}_tangent_1"] for name, state in (("a", "x"), ("b", "v"))}
     hand = my.solve(example_models.hand_tangent(), {**values, "transient": 6}, start={**start, **begin, "growth": 0},
@@ -421,3 +422,81 @@ def test_the_program_myriad_has_the_same_bits(tmp_path):
                    record=dict(from_phase=90, states=["x"]), device="cpu")
     assert np.ptp(run["x"]) > 1
     np.testing.assert_array_equal(theirs["x"], run["x"])
+
+
+def defined_by(program):
+    """What the snippets `model` and `solve` of a Python case study define, which its page shows."""
+    text = (root / "python" / "examples" / "case_studies" / f"{program}.py").read_text(encoding="utf-8")
+    names = {"np": np, "my": my}
+    for part in re.findall(r"# snippet: (?:model|solve)\n(.*?)# end of snippet", text, re.DOTALL):
+        exec(part, names)  # pylint: disable=exec-used
+    return types.SimpleNamespace(**names)
+
+
+@pytest.mark.long
+def test_basins_of_the_page(run_sweep):
+    table = run_sweep("basins", instances=24)
+    places = table["x"][:24]
+    run, magnet = defined_by("basins").released(places, device="cpu")
+    # the program's rows have x fastest; on a border between basins rounding decides
+    assert (run.sweep.unstack(magnet) == table["magnet"].reshape(24, 24).T).mean() > 0.99
+
+
+@pytest.mark.long
+def test_poincare_section_of_the_page(run_sweep):
+    """Up to c = 8, where no orbit is chaotic."""
+    table = run_sweep("poincare", instances=97, transient=200, phases=5)
+    regular = first_of(table, "c", 97) < 8
+    run = defined_by("poincare").returns(first_of(table, "c", 97)[regular], 200, 5, device="cpu")
+    for name, column in (("x", "x"), ("z", "z"), ("t", "return_time")):
+        np.testing.assert_allclose(run[name], table[column].reshape(97, 5)[regular], rtol=1e-5, atol=1e-6)
+
+
+@pytest.mark.long
+def test_monte_carlo_of_the_page(run_sweep):
+    table = run_sweep("monte_carlo", instances=997)
+    page = defined_by("monte_carlo")
+    run = my.solve(page.epidemic, {page.R0: table["R0"], page.duration: table["duration"]}, **page.usual, device="cpu")
+    np.testing.assert_allclose(run["peak"], table["peak"], rtol=1e-7)
+    np.testing.assert_allclose(run["day"], table["day"], rtol=1e-6, atol=1e-6)
+    # What the page draws has the distribution of what the program drew, by Kolmogorov and Smirnov at the level of 1e-4.
+    drawn, there = np.sort(np.asarray(page.study.run(device="cpu")["peak_end"])), np.sort(table["peak"])
+    both = np.concatenate([drawn, there])
+    apart = [np.searchsorted(of, both, "right") / of.size for of in (drawn, there)]
+    assert np.abs(apart[0] - apart[1]).max() < 2.23 * np.sqrt(1 / drawn.size + 1 / there.size)
+
+
+@pytest.mark.long
+def test_bubbles_of_the_page(run_sweep):
+    """At 0.5 bar, where no bubble is chaotic. The page's constants are rounded to a few digits. Its largest
+    radius of a period may be at an end of it, the program's is that of a maximum or of the begin."""
+    table = run_sweep("bubble_response", instances=37, transient=6, phases=3, pressure=0.5)
+    page = defined_by("bubble_resonance")
+    run = page.oscillations({page.f: 1e3 * first_of(table, "f_kHz", 37), page.pressure: np.full(37, 0.5e5)}, 6, 3,
+                            rtol=1e-10, atol=1e-10, device="cpu")
+    relative = run["y_max"].ravel() / table["y_max"] - 1
+    assert relative.min() > -1e-3 and (relative < 1e-3).mean() > 0.85
+
+
+@pytest.mark.long
+def test_relief_valve_of_the_page(run_sweep):
+    """Valves that oscillate, as a program's phase also ends where a valve rests; not near q = 0.8 and 6.5, where they
+    are chaotic."""
+    table = run_sweep("relief_valve", instances=97, transient=12, phases=4)
+    flows = first_of(table, "q", 97)
+    chosen = (flows > 1.5) & (flows < 5.5) | (flows > 7.6) & (flows < 8.3)
+    run = defined_by("relief_valve").oscillations(flows[chosen], 12, 4, rtol=1e-10, atol=1e-10, method="cash_karp",
+                                                  events=as_close("top", "seat"), device="cpu")
+    expected = {name: table[name].reshape(97, 4)[chosen] for name in ("y_min", "y_max", "impacts")}
+    np.testing.assert_allclose(run["y_max"], expected["y_max"], rtol=1e-5)
+    assert np.array_equal(run["impacts"][:, 1:], np.diff(expected["impacts"], axis=1))  # the program counts all of them
+    np.testing.assert_allclose(run["y_min"], expected["y_min"], atol=1e-3)  # the program's least is that of steps' ends
+
+
+@pytest.mark.long
+def test_lyapunov_map_of_the_page(run_sweep):
+    table = run_sweep("lyapunov_map", instances=7, transient=6, phases=12)
+    page = defined_by("chaos_over_a_plane")
+    _, exponents = page.spectra({page.k: table["k"], page.B: table["B"]}, 1, 6, 12, rtol=1e-9, atol=1e-9,
+                                method="dormand_prince_8", device="cpu")
+    np.testing.assert_allclose(exponents[:, 0], table["lambda_library"], rtol=1e-9)

@@ -190,10 +190,29 @@ def test_a_waterfall_has_the_losses_in_order_and_counts_what_failed():
                  starts={k: [0.2, 8.0, 0.4]}, start={x: 0.5})
     axes = fit.waterfall()
     drawn, = axes.lines
-    assert drawn.get_ydata().tolist() == sorted(fit.loss[[0, 2]]) and drawn.get_xdata().tolist() == [1, 2]
-    assert axes.get_xlabel() == "starts (1 without a solution)" and axes.get_yscale() == "log"
+    assert drawn.get_ydata().tolist() == [fit.loss.min()] * 2 and drawn.get_xdata().tolist() == [1, 2]  # one minimum
+    assert axes.get_xlabel() == "starts (1 without a solution)" and axes.get_yscale() == "linear"
     panels = my.fit(model, measured(), free=free, starts=3, **usual).profile().plot()
     assert [a.get_xlabel() for a in panels] == ["k", "B", "x"] and all(len(a.lines) == 2 for a in panels)
+    pyplot.close("all")
+
+
+def test_a_picture_of_a_fit_has_data_over_a_smooth_model():
+    pytest.importorskip("matplotlib").use("Agg")
+    from matplotlib import pyplot
+
+    sparse = {name: values[::6] for name, values in measured().items()}
+    fit = my.fit(model, sparse, free=free, starts=3, sigma=0.01, **usual)
+    of_x, of_w = fit.plot()
+    line, points = of_x.lines[0], of_x.lines[1]
+    assert points.get_ydata().tolist() == sparse[x].tolist() and points.get_xdata().tolist() == times[::6].tolist()
+    assert points.get_zorder() > line.get_zorder() and len(line.get_xdata()) > 20 * len(times[::6])
+    dense = fit.run()
+    at = np.isin(line.get_xdata(), dense.t_sample[0])
+    np.testing.assert_allclose(line.get_ydata()[at], dense["x_sample"][0], rtol=1e-4)
+    assert (of_x.get_xlabel(), of_x.get_ylabel(), of_w.get_ylabel()) == ("t", "x", "w")
+    with pytest.raises(my.Error, match="there are 3 axes for x, w"):
+        fit.plot(axes=pyplot.subplots(3)[1])
     pyplot.close("all")
 
 

@@ -100,6 +100,24 @@ def test_a_problem_is_fitted_to_what_made_its_measurements(tmp_path):
     assert fit.variance == 1 and fit.notes == []
 
 
+def test_a_problem_is_read_fitted_profiled_and_a_function_for_others(tmp_path, monkeypatch):
+    write(tmp_path, measurements=measurements(noise=0.02))
+    monkeypatch.chdir(tmp_path)
+    # snippet: petab
+    problem = my.read_petab("problem.yaml")
+    fit = problem.fit(starts=8)
+    print(fit)                           # the best values with confidence intervals
+    profile = fit.profile()              # profile likelihoods
+    fit.waterfall()                      # the losses of all starts, as a picture
+
+    objective = problem.likelihood()     # for other optimisers and samplers
+    values = [fit.best[name] for name in objective.names]
+    loss, gradient = objective.loss(values), objective.gradient(values)
+    # end of snippet
+    assert abs(loss / fit.loss[fit.index] - 1) < 1e-9 and np.abs(gradient * values).max() < 1e-2
+    assert all(low < true < high for (low, high), true in zip(profile.intervals.values(), (K, SCALE)))
+
+
 def test_known_noise_leaves_a_sum_of_squares_that_is_petabs(tmp_path):
     path = write(tmp_path, measurements=measurements(noise=0.1))
     problem = my.read_petab(path)

@@ -12,6 +12,7 @@ from matplotlib import pyplot as plt
 
 import myriad_ode as my
 
+# snippet: model
 y, v = my.states("y v")
 f, pressure = my.parameters("f pressure")  # of the sound, in Hz and Pa
 y_max, y_min = my.accessory("y_max"), my.accessory("y_min")
@@ -20,12 +21,16 @@ R, rho, c = 10e-6, 997.06, 1497.25                      # radius at rest, densit
 sigma, mu, gamma = 0.072, 8.9e-4, 1.4                   # surface tension, viscosity, polytropic exponent
 ambient = 1e5 - 3167                                    # pressure of the air above the water, less that of vapour
 
+
+# end of snippet
+
 # %% [markdown]
 # Velocities are in units of U = R f and pressures in units of ρ U². The liquid is nearly incompressible: M = U / c is
 # small.
 
 
 # %%
+# snippet: model
 def constants(f, pressure):
     """Mach number, and the pressures of gas, surface tension, viscosity, air and sound."""
     U = R * f
@@ -42,12 +47,22 @@ change = M * (v * ((S + V * v) / y - 3 * gamma * gas) - 2 * np.pi * y * P * cosi
 bubble = my.model({y: v, v: (at_the_wall + change - (1.5 - 0.5 * M * v) * v * v) / (y * (1 - M * v) + M * V)},
                   name="bubble", parameters=(f, pressure),
                   accessories={y_max: my.phase_maximum(y), y_min: my.phase_minimum(y)})
+# end of snippet
+
+
+# snippet: solve
+def oscillations(sweep, transient, kept, **more):
+    """The run of pressures and frequencies, with the extremes of each period of the sound after transient ones."""
+    return my.solve(bubble, sweep, start={y: 1, v: 0}, time=(0, 1), phases=transient + kept, carry_on_step=True,
+                    record=dict(from_phase=transient, accessories=[y_max, y_min]),
+                    **{"rtol": 1e-8, "atol": 1e-8, "method": "tsitouras_5", **more})
+# end of snippet
+
 
 # %%
 pressures = np.array([0.01, 0.2, 0.4, 0.6]) * 1e5
 sweep = my.grid({pressure: pressures, f: np.geomspace(60e3, 800e3, 256)})
-run = my.solve(bubble, sweep, start={y: 1, v: 0}, time=(0, 1), phases=144, rtol=1e-8, atol=1e-8, method="tsitouras_5",
-               carry_on_step=True, record=dict(from_phase=136, accessories=[y_max, y_min]))
+run = oscillations(sweep, transient=136, kept=8)
 print(run.report)
 expansion = sweep.unstack(run["y_max"].max(axis=1)) - 1           # a row for each pressure
 compression = sweep.unstack((run["y_max"] / run["y_min"]).max(axis=1))

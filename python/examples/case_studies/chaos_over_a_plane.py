@@ -14,30 +14,40 @@ from matplotlib import pyplot as plt
 
 import myriad_ode as my
 
+# snippet: model
 x, v = my.states("x v")
 k, B = my.parameters("k B")
 duffing = my.model({x: v, v: x - x**3 - k * v + B * my.cos(my.time)}, name="duffing")
+# end of snippet
 
 # %% [markdown]
 # One instance for each pair of values. With as many tangent vectors as states, the whole spectrum is found, and its sum
 # has to be -k: that is how fast friction contracts areas. A phase is one period of the forcing; the first 40 are not
 # counted.
 
+
 # %%
-plane = my.grid({k: np.linspace(0.05, 0.35, 64), B: np.linspace(0.0, 0.5, 56)}, {"transient_phases": 40})
-with_tangents = my.with_tangents(duffing, 2)
-run = my.solve(with_tangents, plane, start={x: 1, v: 0.1}, time=(0, 2 * np.pi), phases=140, rtol=1e-6, atol=1e-6,
-               method="tsitouras_5", carry_on_step=True)
-exponents = my.exponents(run)
+# snippet: solve
+def spectra(plane, vectors, transient, counted, **more):
+    """The run of a plane of k and B, and as many exponents as there are vectors, the largest first."""
+    model = my.with_tangents(duffing, vectors, transient_phases=transient)
+    run = my.solve(model, plane, start={x: 1, v: 0.1}, time=(0, 2 * np.pi), phases=transient + counted,
+                   carry_on_step=True, **{"rtol": 1e-6, "atol": 1e-6, "method": "tsitouras_5", **more})
+    return run, my.exponents(run)
+# end of snippet
+
+
+plane = my.grid({k: np.linspace(0.05, 0.35, 64), B: np.linspace(0.0, 0.5, 56)})
+run, exponents = spectra(plane, vectors=2, transient=40, counted=100)
 largest = exponents[:, 0]
 print(run.report)
 
 # %% [markdown]
-# A section through the plane at B = 0.3: where the oscillator is at the end of each of the last 60 periods. The same
-# model is not compiled again.
+# A section through the plane at B = 0.3: where the oscillator is at the end of each of the last 60 periods, without
+# tangents.
 
 # %%
-section = my.solve(with_tangents, {k: np.linspace(0.05, 0.35, 900), B: np.full(900, 0.3)}, start={x: 1, v: 0.1},
+section = my.solve(duffing, {k: np.linspace(0.05, 0.35, 900), B: np.full(900, 0.3)}, start={x: 1, v: 0.1},
                    time=(0, 2 * np.pi), phases=200, record=dict(from_phase=140, states=[x]), rtol=1e-6, atol=1e-6,
                    method="tsitouras_5", carry_on_step=True)
 

@@ -12,27 +12,40 @@ from matplotlib import pyplot as plt
 
 import myriad_ode as my
 
+# snippet: model
 y, v, u = my.states("y v u")
 q = my.parameter("q")
 kappa, delta, beta, restitution = 1.25, 10.0, 20.0, 0.8
 impacts, speed = my.integer_accessory("impacts"), my.accessory("speed")
 y_min, y_max = my.accessory("y_min"), my.accessory("y_max")
+# end of snippet
 
 # %% [markdown]
 # A phase ends at a maximum of y, so that phases have no fixed length, and records say how far the valve opened and
 # closed in each.
 
 # %%
+# snippet: model
 valve = my.model(
     {y: v, v: u - kappa * v - (y + delta), u: beta * (q - y * my.sqrt(u))}, name="valve",
     accessories={y_min: my.phase_minimum(y), y_max: my.phase_maximum(y), impacts: 0, speed: 0},
     events=[my.event(v, name="top", direction="falling", stop_after=1),
             my.event(y, name="seat", direction="falling", tolerance=1e-10, do={
                 v: -restitution * v, impacts: impacts + 1, speed: my.maximum(speed, -v)})])
+# end of snippet
+
+
+# snippet: solve
+def oscillations(flows, transient, kept, **more):
+    """The run of flows, with what happens in each oscillation after transient ones."""
+    return my.solve(valve, {q: flows}, start={y: 0.2, v: 0, u: 0}, time=(0, 1000), phases=transient + kept,
+                    carry_on=True, record=dict(from_phase=transient, accessories=[y_min, y_max, impacts, speed]),
+                    **{"rtol": 1e-9, "atol": 1e-9, "method": "tsitouras_5", **more})
+# end of snippet
+
 
 flows = np.linspace(0.5, 10, 600)
-run = my.solve(valve, {q: flows}, start={y: 0.2, v: 0, u: 0}, time=(0, 1000), phases=128, carry_on=True, rtol=1e-9,
-               atol=1e-9, method="tsitouras_5", record=dict(from_phase=104, accessories=[y_min, y_max, impacts, speed]))
+run = oscillations(flows, transient=104, kept=24)
 print(run.report)
 
 # %% [markdown]
@@ -54,7 +67,7 @@ my.plots.bifurcation(flows, run["y_min"], axes=upper, color="#E69F00", markersiz
 upper.plot(flows, np.where(growth < 0, rest, np.nan), color="black", linewidth=1)
 upper.plot(flows, np.where(growth < 0, np.nan, rest), color="black", linewidth=1, linestyle="--")
 for name, at, level, colour in (("largest opening", 2.2, 3.6, "#0072B2"), ("smallest opening", 3.4, 0.2, "#E69F00"),
-                                ("equilibrium", 4.2, 1.55, "black")):
+                                ("equilibrium", 4.7, 0.95, "black")):
     upper.annotate(name, (at, level), color=colour)
 upper.set_ylabel("displacement y")
 my.plots.bifurcation(flows, np.where(run["impacts"] > 0, run["speed"], np.nan), axes=lower, color="#D55E00",

@@ -13,6 +13,7 @@ from ..base import component_kinds as kinds
 from ..base.errors import Error
 from ..models.components import Components, by_component, unknown
 from ..solving.core_options import per_state
+from ..solving.gather import given_values
 from ..solving.options import Options
 from ..solving.solve import solve
 from ..sweeps.gpu_inputs import is_on_gpu
@@ -77,6 +78,7 @@ def forward_of(model: AnyModel, free: Sequence[str], sweep: ByComponent | None, 
                 raise Error(f"'{name}' is in free= and has a value in {where}: give it in free= alone")
             if np.ndim(value) != 0:
                 raise Error(f"'{name}' has several values in {where}: what is not in free= has one value")
+    given_values(components, given["sweep="], given["start="])  # refuses names that the model does not have
     return Forward(model, free, given["sweep="], given["start="], options)
 
 

@@ -229,3 +229,7 @@ def _centred_ranks(values: Array) -> Array:
         _, which, counts = np.unique(column, return_inverse=True, return_counts=True)
         ranks[:, i] = (np.cumsum(counts) - (counts - 1) / 2)[which]
     return ranks - ranks.mean(axis=0)
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

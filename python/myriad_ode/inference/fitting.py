@@ -173,15 +173,35 @@ class Fit(Generic[SomeObjective]):
     def waterfall(self, *, axes: Axes | None = None, **style: Any) -> Any:
         """Draws the losses of all starts in ascending order: steps are minima, and how many starts reach the lowest
         tells whether there were enough. Further arguments go to matplotlib's `plot`. Returns the axes."""
-        return plots.waterfall(self.loss, [s == "converged" for s in self.status], axes=axes, **style)
+        return plots.waterfall(self.loss, [s == "converged" for s in self.status], tolerance=self._equal, axes=axes,
+                               **style)
+
+    def plot(self, *, axes: Any = None, **style: Any) -> Any:
+        """Draws a panel for each quantity in the data, into a new figure, or into as many `axes`: the data over the
+        best model, at times between those of the data too. Further arguments go to matplotlib's `plot` of the model.
+        Returns the axes in an array."""
+        curves = self.problem.curves([self.best[name] for name in self.problem.names])
+        if axes is None:
+            axes = plots.panels(len(curves))
+        if np.size(axes) != len(curves):
+            raise Error(f"there are {np.size(axes)} axes for {', '.join(curves)}: give one for each")
+        for of, into in zip(curves.values(), np.ravel(axes)):
+            plots.data_and_model(of.t_data, of.data, of.t, of.model, sigma=of.sigma, xlabel=of.t_label,
+                                 ylabel=of.label, axes=into, **style)
+        return np.ravel(axes)
 
     def run(self) -> Run:
         """A run of the best values, with its sensitivities."""
         return self.problem.run([self.best[name] for name in self.problem.names])
 
+    @property
+    def _equal(self) -> float:
+        """Within what losses are equal: a thousandth of half the sum of the least squares, or rounding."""
+        return 1e-3 * 0.5 * float(self.residuals @ self.residuals) + 1e-12
+
     def _reached(self) -> str:
-        least, size = self.loss[self.index], 0.5 * float(self.residuals @ self.residuals)
-        near = int(np.sum(self.loss <= least + 1e-3 * size + 1e-12))
+        least = self.loss[self.index]
+        near = int(np.sum(self.loss <= least + self._equal))
         return f"loss {least:.6g}, reached by {near} of {len(self.loss)} starts"
 
     def __str__(self) -> str:

@@ -15,7 +15,7 @@ from ..gradients.forward import forward_of, refuse_chosen, tolerances
 from ..models.components import Components, by_component, unknown
 from ..sweeps.inputs import by_name, real
 from ..symbolic.symbols import time
-from .objective import Free, Objective
+from .objective import Curve, Free, Objective
 
 if TYPE_CHECKING:
     from ..models.any_model import AnyModel
@@ -141,6 +141,21 @@ class LeastSquares(Objective):
             samples["states"] = states
         return self._forward.run(self._forward.of_rows(np.atleast_2d(self._sets(values))), sensitivities,
                                  time=(self._begin, float(self.times[-1])), samples=samples)
+
+    def curves(self, values: Values) -> dict[str, Curve]:
+        """Data and model of each quantity, for one set of values; the model at times between those of the data too."""
+        last = float(self.times[-1])
+        times = np.union1d(np.linspace(self._begin, last, 400), self.times)
+        run = self._forward.run(self._forward.of_rows(np.atleast_2d(self._sets(values))), time=(self._begin, last),
+                                samples=times)
+        units, t_label = self._components.units, f"t ({run.time_unit})" if run.time_unit else "t"
+        found, first = {}, 0
+        for name, where in self._where.items():
+            these = slice(first, first := first + len(where))
+            found[name] = Curve(self.times[where], self._observed[these],
+                                self._sigma[these] if self.has_sigma else None, times, run._values_of(name)[0],
+                                t_label, f"{name} ({units[name]})" if name in units else name)
+        return found
 
     def evaluate(self, values: Values) -> tuple[Array, Array, Array]:
         """Of sets in rows the loss, residuals, [set, residual], and their derivatives by the free components, one more

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -41,6 +41,18 @@ class Free:
         return max(1.0, abs(self.least), abs(self.most))
 
 
+class Curve(NamedTuple):
+    """Data of a quantity, with deviations if they are known, and the model at more times."""
+
+    t_data: Array
+    data: Array
+    sigma: Array | None
+    t: Array
+    model: Array
+    t_label: str
+    label: str
+
+
 class Objective:
     """What a fit minimises, as a function of the values of the free components, in the order of `names`: one set, or
     several in rows, which are integrated as one ensemble."""
@@ -68,6 +80,10 @@ class Objective:
     def run(self, values: Values, sensitivities: bool = True) -> Run:
         """The run of one set of values, or of several in rows."""
         raise NotImplementedError
+
+    def curves(self, values: Values) -> dict[str, Curve]:
+        """Data and model of each quantity, for one set of values."""
+        raise Error(f"{type(self).__name__} has no picture of data and model: my.fit has one")
 
     def evaluate(self, values: Values) -> tuple[Array, Array, Array]:
         """Of sets in rows the loss, and residuals r, [set, residual], and a matrix J, [set, residual, free component]:

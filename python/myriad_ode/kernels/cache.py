@@ -26,3 +26,7 @@ def prepare() -> bool:
 def clear() -> int:
     """Removes all compiled models from the cache; returns how many."""
     return _core.clear_cache()
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

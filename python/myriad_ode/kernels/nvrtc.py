@@ -78,7 +78,7 @@ def _found() -> pathlib.Path:
             raise Error(f"MYRIAD_NVRTC is {chosen!r}, and there is no such file: give the path of libnvrtc.so, or "
                         "unset the variable")
         raise Error("there is no NVRTC to compile the model for the GPU with: `pip install nvidia-cuda-nvrtc`, or "
-                    "`pip install nvidia-cuda-nvrtc`, or name its library in the environment variable MYRIAD_NVRTC")
+                    "name its library in the environment variable MYRIAD_NVRTC")
     return path
 
 

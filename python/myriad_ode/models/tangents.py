@@ -19,12 +19,13 @@ if TYPE_CHECKING:
 __all__ = ["with_tangents"]
 
 
-def with_tangents(model: AnyModel, vectors: int = 1) -> WithTangents:
+def with_tangents(model: AnyModel, vectors: int = 1, *, transient_phases: int = 0) -> WithTangents:
     """The model with tangent vectors: one gives the largest Lyapunov exponent, as many as there are states the full
-    spectrum. They are orthonormalised at the end of every phase, and their growth is summed from phase
-    `transient_phases` on, a shared integer that is 0 unless the sweep sets it: `exponents(run)` has the result. Phases
-    should be short enough (docs/writing_a_model.md)."""
-    return WithTangents(model, vectors)
+    spectrum. They are orthonormalised at the end of every phase, and their growth is summed over the phases that follow
+    the first `transient_phases`: `exponents(run)` has the result. Phases should be short enough
+    (docs/writing_a_model.md). The number is a shared integer of the model, so that a sweep may set it anew, by its
+    name."""
+    return WithTangents(model, vectors, transient_phases)
 
 
 class WithTangents(Extended):
@@ -33,10 +34,13 @@ class WithTangents(Extended):
 
     not_interpreted = "it has tangents"
 
-    def __init__(self, model: AnyModel, vectors: int) -> None:
+    def __init__(self, model: AnyModel, vectors: int, transient_phases: int = 0) -> None:
         n = len(model.states)
         if not is_whole(vectors, 1, n):
             raise Error(f"{vectors!r} tangent vectors{at(users_line())}: a model of {n} states has from 1 to {n}")
+        if not is_whole(transient_phases, 0, (1 << 31) - 1):
+            raise Error(f"transient_phases is {transient_phases!r}{at(users_line())}: give the number of phases that "
+                        "do not count, 0 or more")
         if model.mass_matrix is not None:
             raise Error(f"the model has a mass matrix{at(users_line())}, with which tangents of algebraic states would "
                         "not be independent: solve its algebraic equations in the others")
@@ -56,9 +60,9 @@ class WithTangents(Extended):
         mirror = 1 + golden - np.floor(golden)
         mirror /= np.sqrt(sum(mirror * mirror))
         start = np.eye(n) - 2 * mirror[:, None] * mirror
+        defaults = {"transient_phases": int(transient_phases), **dict(zip(tangents, start[:, :self.vectors].T.ravel()))}
         super().__init__(model, {"state": tangents, "shared_integer": ["transient_phases"],
-                                 "accessory": [*growth, "time_summed", "phase_began"]},
-                         {"transient_phases": 0, **dict(zip(tangents, start[:, :self.vectors].T.ravel()))}, "tangents")
+                                 "accessory": [*growth, "time_summed", "phase_began"]}, defaults, "tangents")
 
     def source(self) -> tuple[str, str]:
         """The text that kernels are compiled from, and the name of its struct."""

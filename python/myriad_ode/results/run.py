@@ -361,7 +361,7 @@ class Run(Mapping):
 
     @property
     def plot(self) -> Plots:
-        """Pictures by matplotlib: `bifurcation`, `map`, `time_series`, `phase_portrait` and `statuses`."""
+        """Pictures by matplotlib: `bifurcation`, `map`, `time_series`, `bands`, `phase_portrait` and `statuses`."""
         return Plots(self)
 
     def _repr_html_(self) -> str:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,13 +12,13 @@ from ..base import plots
 from ..base.errors import Error
 from ..base.html import row
 from ..base.statuses import status_names
-from ..models.components import name_of
+from ..models.components import listed, name_of
 
 if TYPE_CHECKING:
     import numpy.typing as npt
     from matplotlib.axes import Axes
 
-    from ..symbolic.types import Array, Component
+    from ..symbolic.types import Array, Component, SomeComponents
     from .protocol import Results
 
 
@@ -27,48 +28,89 @@ class Plots:
     def __init__(self, run: Any) -> None:
         self._run = run
 
-    def _label(self, name: str) -> str:
+    def _label(self, name: str, when: str = "") -> str:
         units = self._run.units
-        return f"{name} ({units[name]})" if name in units else name
+        return " ".join([name, *([when] if when else []), *([f"({units[name]})"] if name in units else [])])
+
+    def _varied(self, name: str) -> str:
+        """The label of what the sweep varies: of a state that is its value at the start."""
+        return self._label(name, "at the start" if name in self._run.states else "")
+
+    def _in_sweep(self, name: str) -> bool:
+        return self._run.sweep is not None and name in self._run.sweep.names
 
     def _per_instance(self, name: str) -> Array:
         """A value for each instance: of the sweep, so that initial states are those given, else of the results."""
         run = self._run
-        if run.sweep is not None and name in run.sweep.names:
+        if self._in_sweep(name):
             return run.sweep.values(name)
         values = np.asarray(run[name])
         if values.shape != (run.size,):
             raise Error(f"{name} has values of shape {values.shape}: this axis needs one number per instance")
         return values
 
-    def bifurcation(self, x: Component, y: Component, *, axes: Axes | None = None, **style: Any) -> Any:
-        """The recorded component y of every phase over the parameter x."""
+    def _starts_beside(self, x: str) -> list[str]:
+        """The states whose initial values a grid varies along other axes than that of x."""
+        coordinates = {} if self._run.sweep is None else self._run.sweep.coordinates
+        along = coordinates.get(x, ("",))[0]
+        return [name for name, (axis, values) in coordinates.items()
+                if name in self._run.states and axis != along and len(np.unique(values)) > 1]
+
+    def _told_apart(self, names: Sequence[str]) -> tuple[Any, str]:
+        """What tells instances apart by some components: numbers of one, words of several; and what it is."""
+        label = ", ".join(map(self._varied, names))
+        columns = [self._per_instance(name) for name in names]
+        if len(names) < 2:
+            return (columns[0] if names else None), label
+        sets, which = np.unique(np.stack(columns, axis=1), axis=0, return_inverse=True)
+        return np.array([", ".join(f"{value:.4g}" for value in one) for one in sets])[which.ravel()], label
+
+    def bifurcation(self, x: Component, y: Component, *, by: SomeComponents | None = None, axes: Axes | None = None,
+                    **style: Any) -> Any:
+        """The recorded component y of every phase over the parameter x. Colours tell apart what comes from different
+        values of the components `by`: without, of the initial states that a grid varies; `by=()` has one colour."""
         x, y = name_of(x), name_of(y)
         if y not in self._run.records:
             raise Error(f"{y} was not recorded: give record=dict(from_phase=..., states=[{y}]) to solve")
-        return plots.bifurcation(self._per_instance(x), self._run.records[y], xlabel=self._label(x),
+        names = self._starts_beside(x) if by is None else [name_of(one) for one in listed(by)]
+        told, bylabel = self._told_apart(names)
+        return plots.bifurcation(self._per_instance(x), self._run.records[y], by=told, bylabel=bylabel,
+                                 xlabel=self._varied(x) if self._in_sweep(x) else self._label(x),
                                  ylabel=self._label(y), axes=axes, **style)
 
-    def map(self, x: Component, y: Component, z: Component, *, phase: int = -1, axes: Axes | None = None,
-            **style: Any) -> Any:
+    def _at_the_end(self, z: str, phase: int) -> tuple[Any, str]:
+        """Values of a component at the end, or in a recorded phase, and their label."""
+        run = self._run
+        if z == "status":
+            return run.status_codes, z
+        if z in run.records:
+            recorded = run.records[z]
+            number = phase % recorded.shape[1]
+            last = number == recorded.shape[1] - 1
+            return recorded[:, phase], self._label(z, "at the end" + ("" if last else
+                                                                     f" of phase {run.from_phase + number}"))
+        kept = {**run.states, **run.accessories}
+        values = np.asarray(kept[z] if z in kept else run[z])
+        return (values[:, -1] if values.ndim == 2 else values), self._label(z, "at the end" if z in run.states else "")
+
+    def map(self, x: Component, y: Component, z: Component, *, phase: int = -1,
+            names: Sequence[str] | Mapping[int, str] | None = None, axes: Axes | None = None, **style: Any) -> Any:
         """The component z over two axes of a grid, x and y: its value at the end, or in one recorded phase; failed
-        instances are left grey. z may be "status"."""
+        instances are left grey. z may be "status". `names` says what whole numbers stand for."""
         run, (x, y, z) = self._run, map(name_of, (x, y, z))
         along = [] if run.sweep is None else [name for name, _ in run.sweep.axes]
         if sorted((x, y)) != sorted(name for name, values in (run.sweep.axes if along else ()) if len(values) > 1):
             raise Error(f"the sweep is no grid over {x} and {y} alone (its axes: {', '.join(along) or 'none'}): make "
                         f"it by my.grid({x}=..., {y}=...)")
-        values = np.asarray(run.status_codes if z == "status" else
-                            run.records[z][:, phase] if z in run.records else run[z])
-        if values.ndim == 2:
-            values = values[:, -1]
+        values, zlabel = self._at_the_end(z, phase)
+        grid, failed = (np.moveaxis(run.sweep.unstack(one), (along.index(x), along.index(y)), (0, 1))
+                        for one in (values, run.failed))
         if z != "status":
-            values = np.where(run.failed, np.nan, values)
-        grid = np.moveaxis(run.sweep.unstack(values), (along.index(x), along.index(y)), (0, 1))
+            grid = np.ma.masked_where(failed, grid)
         values_of = dict(run.sweep.axes)
-        return plots.parameter_map(values_of[x], values_of[y], grid.reshape(grid.shape[:2]), xlabel=self._label(x),
-                                   ylabel=self._label(y), zlabel=self._label(z),
-                                   names=status_names if z == "status" else None, axes=axes, **style)
+        return plots.parameter_map(values_of[x], values_of[y], grid.reshape(grid.shape[:2]), xlabel=self._varied(x),
+                                   ylabel=self._varied(y), zlabel=zlabel,
+                                   names=status_names if z == "status" else names, axes=axes, **style)
 
     def _instances(self, instances: npt.ArrayLike | None) -> tuple[Array, list[str]]:
         """Numbers of instances and what tells them apart."""
@@ -77,8 +119,11 @@ class Plots:
         if chosen.ndim != 1 or not ((-run.size <= chosen) & (chosen < run.size)).all():
             raise Error(f"instances {instances!r}: give numbers from 0 to {run.size - 1}")
         chosen = chosen % run.size
-        varying = [] if run.sweep is None else list(run.sweep.coordinates)[:2]
-        values = {name: run.sweep.values(name)[chosen] for name in varying}
+        given = ({name: run.sweep.values(name) for name in run.sweep.coordinates} if run.sweep is not None else
+                 {**run.parameters, **{name: values for name, values in run.start.items()
+                                       if isinstance(values, np.ndarray) and values.ndim}})
+        varying = [name for name, values in given.items() if len(np.unique(np.asarray(values)[chosen])) > 1][:2]
+        values = {self._varied(name): np.asarray(given[name])[chosen] for name in varying}
         return chosen, [", ".join(f"{n} = {v[i]:.4g}" for n, v in values.items()) or f"instance {chosen[i]}"
                         for i in range(len(chosen))]
 
@@ -93,6 +138,22 @@ class Plots:
         return plots.time_series(run.t_sample[chosen], run.samples[y][chosen], labels=labels, xlabel=xlabel,
                                  ylabel=self._label(y), axes=axes, **style)
 
+    def bands(self, y: Component, *, quantiles: Sequence[float] = (0.05, 0.25, 0.5, 0.75, 0.95),
+              axes: Axes | None = None, **style: Any) -> Any:
+        """Quantiles of a sampled state over time, of all instances that did not fail: bands between two that belong
+        together, and the median."""
+        run, y = self._run, name_of(y)
+        if y not in run.samples:
+            raise Error(f"there are no samples of {y}: give samples=, as in samples=200, to solve")
+        whole = ~run.failed
+        times = run.t_sample[whole]
+        if not len(times) or not (times == times[0]).all():
+            raise Error("instances were not sampled at the same times, or none has succeeded: give samples= as times, "
+                        "or the same time domain to all")
+        xlabel = f"t ({run.time_unit})" if run.time_unit else None
+        return plots.bands(times[0], np.quantile(run.samples[y][whole], quantiles, axis=0), quantiles, xlabel=xlabel,
+                           ylabel=self._label(y), axes=axes, **style)
+
     def phase_portrait(self, x: Component, y: Component, *, instances: npt.ArrayLike | None = None,
                        axes: Axes | None = None, **style: Any) -> Any:
         """The samples of one state over another; without samples the points recorded at the ends of phases.
@@ -106,9 +167,9 @@ class Plots:
         return plots.phase_portrait(kept[x][chosen], kept[y][chosen], labels=labels, xlabel=self._label(x),
                                     ylabel=self._label(y), points=points, axes=axes, **style)
 
-    def statuses(self, *, axes: Axes | None = None) -> Any:
+    def statuses(self, *, axes: Axes | None = None, **style: Any) -> Any:
         """How many instances ended in which way."""
-        return plots.statuses(self._run.status_codes, status_names, axes=axes)
+        return plots.statuses(self._run.status_codes, status_names, axes=axes, **style)
 
 
 def html(run: Results) -> str:

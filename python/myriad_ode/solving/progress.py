@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
@@ -23,17 +24,19 @@ class ProgressDisplay:
             except ImportError:
                 raise Error("progress=True shows a bar of the package tqdm, which is missing: `pip install tqdm`, or "
                             "give a function of two numbers, instances done and all") from None
-            self._bar = tqdm(unit="instance", unit_scale=True)
+            # a file keeps every frame, which a terminal or a notebook draws over
+            seconds = 0.1 if sys.stderr.isatty() or "ipykernel" in sys.modules else 5.0
+            self._bar = tqdm(unit="instance", unit_scale=True, mininterval=seconds, miniters=1)
 
     def __call__(self, done: int, total: int, earlier: int = 0, seconds: float = 0.0,
                  by_status: Mapping[str, int] | None = None) -> None:
         if self._function is not None:
             self._function(done, total)
         if self._bar is not None:
-            self._bar.total, self._bar.n, self._bar.initial = total, done, earlier
+            self._bar.total, self._bar.initial = total, earlier
             failed = {n: c for n, c in (by_status or {}).items() if not n.startswith(("success", "stopped"))}
             self._bar.set_postfix(failed, refresh=False)
-            self._bar.refresh()
+            self._bar.update(done - self._bar.n)  # draws it if it was drawn `mininterval` ago
 
     def close(self) -> None:
         """Ends the bar."""

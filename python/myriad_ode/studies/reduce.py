@@ -106,3 +106,7 @@ def total(name: str, inputs: str | Sequence[str], size: int, function: Callable[
     Threads take turns in calling it; for executors it must pickle."""
     inputs = [inputs] if isinstance(inputs, str) else list(inputs)
     return Reduction("sum_of", _variable(name), [_variable(i) for i in inputs], int(size), _OfChunk(function))
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)
