@@ -8,12 +8,14 @@
 // limit: integrate_ensemble<bouncer, cash_karp> registers 56 stack 424 spill 116
 // limit: integrate_ensemble<bouncer, dense<tsitouras_5>> registers 80 stack 392 spill 0
 // limit: integrate_ensemble<waves, runge_kutta_4> stack 0 spill 0
+// limit: integrate_ensemble<sharing, euler_maruyama> registers 88 stack 0 spill 0
 
 #include <myriad/cuda/kernel.cuh>
 #include <myriad/methods.hpp>
 #include <myriad/model.hpp>
 
 #include "problems/lorenz.hpp"
+#include "tests/support/noisy.hpp"
 
 using problems::lorenz;
 
@@ -61,5 +63,6 @@ constexpr auto constant = myriad::shared_placement::constant_bank;
 INSTANTIATE(lorenz, runge_kutta_4)
 INSTANTIATE(lorenz, tsitouras_5)
 INSTANTIATE(waves, runge_kutta_4)
+INSTANTIATE(noisy::sharing, euler_maruyama)
 INSTANTIATE(bouncer, cash_karp)
 INSTANTIATE(bouncer, dense<myriad::tsitouras_5>)

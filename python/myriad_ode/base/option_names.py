@@ -12,8 +12,8 @@ names = {
 true_choices = {"phase_time": "carry_on", "phase_step": "carry_on", "advice": "on"}
 
 # Options that are not here: results read the counters; `progress` is an argument of its own; kernels that are compiled
-# at run time have their place for shared parameters, and chunks, from the package.
-left_out = ("counting", "progress", "block_size", "chunk_size", "shared_placement")
+# at run time have their place for shared parameters, and chunks, from the package; models have no diffusion here.
+left_out = ("counting", "progress", "block_size", "chunk_size", "shared_placement", "seed", "noise_step")
 
 # Components of both kinds are named together, and a table of sample times has a row for each instance.
 left_out_of_structs = ("record.integer_accessories", "samples.times_of_instances")

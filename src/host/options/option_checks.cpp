@@ -159,6 +159,25 @@ std::int64_t step_limit(const options& o, bool adaptive, int digits) {
     return o.max_steps > 0 ? o.max_steps : adaptive ? adaptive_steps : most_steps(digits);
 }
 
+namespace {
+
+/// Options of paths, and steps that a path has a place for.
+void check_path(const options& o, bool has_diffusion) {
+    require(has_diffusion || o.seed == 0, named_option("seed"), " is ", o.seed,
+            ", but the model has no diffusion, whose paths it seeds", cure,
+            "leave it out; random numbers of hooks have seeds of their own");
+    require(has_diffusion || o.noise_step == 0, named_option("noise_step"), " is ", o.noise_step,
+            ", but the model has no diffusion, whose paths have such steps", cure, "leave it out");
+    if (!has_diffusion || o.noise_step == 0) return;
+    const double cells = o.step / o.noise_step, parts = cells * detail::parts_of_cell;
+    require(parts > 0.5 && std::fabs(parts - std::rint(parts)) <= 1e-6 * parts, named_option("step"), " is ", o.step,
+            ", which is neither a multiple of ", named_option("noise_step"), ", ", o.noise_step,
+            ", nor a number of 65536ths of it", cure,
+            "give a noise_step that is the longest of the steps to compare, each half of the one before");
+}
+
+}  // namespace
+
 void option_limits::check(const options& o) const {
     require(computes_as_written(), "the library ", not_as_written);
     check_each(*this, o, "");
@@ -190,6 +209,7 @@ void option_limits::check(const options& o) const {
                 named_option("absolute_tolerance"), " are 0", cure, "give the error you accept per step, such as 1e-9");
     require(adaptive || !std::isnan(o.step), named_option("step"), " is not set, but the method takes fixed steps",
             cure, cures::give_step);
+    check_path(o, has_diffusion);
     // Fixed steps do not use tolerances.
     for (std::size_t c = 0; adaptive && c < o.relative_tolerance.size(); ++c)
         check_kept("relative_tolerance", o.relative_tolerance[c]);

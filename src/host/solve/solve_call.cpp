@@ -29,6 +29,7 @@ void called_model<R>::check_options(const options& o) const {
                   shape->writes_time_domain,
                   facts.adaptive(),
                   facts.samples_trajectory,
+                  shape->has_diffusion,
                   std::numeric_limits<R>::digits,
                   [](double value) { return static_cast<double>(static_cast<R>(value)); }}
         .check(o);
@@ -58,6 +59,7 @@ phases_left called_model<R>::check_uses(ensemble_data<R>& data, const options& o
     check_ended(data, o, count);
     check_scales(data, facts.scales_tolerances);
     check_sample_times(data, o, count);
+    check_paths(data, o, count);
     const argument_head<R> inputs = inputs_in(data);
     if (enter_thread) enter_thread();
     check_event_tolerances<R>(data, o, count, {functions, inputs});

@@ -17,7 +17,7 @@ using host::option_effect;
 using host::option_row;
 
 constexpr host::model_components two_states{.state = {2, ""}};
-constexpr host::option_limits limits{two_states, 1, false, true, true, 53, [](double value) { return value; }};
+constexpr host::option_limits limits{two_states, 1, false, true, true, false, 53, [](double value) { return value; }};
 
 std::string refusal_of(const options& o) {
     try {

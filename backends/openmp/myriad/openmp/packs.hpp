@@ -152,8 +152,9 @@ kernel_arguments<Model, R> arguments_of(const any_arguments<R>& from) {
 #define MYRIAD_CHECK_PLACE(type, name, count) static_assert(offsetof(arrays, name) == at.name);
         MYRIAD_ARGUMENT_ARRAYS(MYRIAD_CHECK_PLACE)
 #undef MYRIAD_CHECK_PLACE
-        static_assert(sizeof(arrays) == at.end);
+        static_assert(sizeof(arrays) == at.noise);
         std::memcpy(static_cast<arrays*>(&all), from.arrays, sizeof(arrays));
+        if constexpr (has_diffusion<Model>) std::memcpy(&all.noise, from.arrays + at.noise, sizeof(all.noise));
     }
     return all;
 }

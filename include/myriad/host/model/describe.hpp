@@ -44,6 +44,9 @@ template <class Model>
     if constexpr (detail::has_summaries<Model>)
         hooks += message(", observe (", detail::n_summary<Model>,
                          detail::n_summary<Model> == 1 ? " summary)" : " summaries)");
+    if constexpr (detail::has_diffusion<Model>)
+        hooks += message(", diffusion (", detail::n_wiener<Model>,
+                         detail::n_wiener<Model> == 1 ? " process)" : " processes)");
     add(hooks, detail::has_initialise<Model>, "initialise");
     add(hooks, detail::has_after_step<Model>,
         detail::has_generic_after_step<Model> ? "after_step (generic)" : "after_step (scalar)");
@@ -60,6 +63,7 @@ template <class Model>
     add(declares, detail::large_rhs<Model>, "large_rhs");
     add(declares, detail::autonomous<Model>, "autonomous");
     add(declares, detail::has_jacobian_pattern<Model>, "jacobian_pattern");
+    add(declares, detail::additive_noise<Model>, "additive_noise");
     std::string counts;
 #define MYRIAD_SHOW_COUNT(kind, plural, words, type) \
     counts += message(counts.empty() ? "" : ", ", detail::n_##kind<Model>, ' ', words);

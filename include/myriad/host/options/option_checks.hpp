@@ -46,7 +46,7 @@ std::int64_t step_limit(const options& o, bool adaptive, int digits);
 struct option_limits {
     const model_components& components;
     int n_event;
-    bool writes_times, adaptive, samples_trajectory;
+    bool writes_times, adaptive, samples_trajectory, has_diffusion;
     int digits;                 ///< of the real type's mantissa
     double (*rounded)(double);  ///< a number rounded to the real type
 

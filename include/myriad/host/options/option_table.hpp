@@ -232,6 +232,12 @@ struct option_table<options> {
                      "t_end"},
         option_entry{"phase_step", &o::phase_step, results,
                      "a phase starts with `step`, or with the last step size (`carry_on`)"},
+        option_entry{"seed", &o::seed, results, "", from_to(0, 4294967295.0),
+                     "seed of the paths of a stochastic equation", "give a whole number from 0 on"},
+        option_entry{"noise_step", &o::noise_step, results, "time", at_least(0),
+                     "cells of these paths: steps that are a multiple of one, or a number of 65536ths of one, follow "
+                     "the same path; 0: the step",
+                     "give the longest of the steps that are to follow one path, or 0 for the step"},
         option_entry{"events", &o::events, results,
                      "how events are detected: one entry for each; none: defaults for all"},
         option_entry{"sub_samples", &o::sub_samples, results, "", from_to(1, 1e4),

@@ -143,6 +143,12 @@ struct options {
     /// The first step of a phase.
     myriad::phase_step phase_step = myriad::phase_step::restart;
 
+    /// The seed of the paths of a stochastic equation (`diffusion`), from 0 to 2^32 - 1.
+    std::int64_t seed = 0;
+    /// The cells of these paths, in time: steps that are a multiple of one, or a number of 65536ths of one, follow the
+    /// same path. 0: the step.
+    double noise_step = 0;
+
     std::vector<event_options> events = {};  ///< one for each event, in the model's order; empty: defaults for all
     std::int64_t sub_samples = 1;  ///< points per step at which event functions are evaluated (the last is the end);
                                    ///< with two or more also where they turn

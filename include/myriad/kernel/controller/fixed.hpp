@@ -39,6 +39,7 @@ struct fixed_stepping {
     MYRIAD_FUNCTION void choose_step(int i, std::int32_t) { set_lane(s.data.h_next, i, args.step); }
     MYRIAD_FUNCTION void begin(int i, R t) {
         set_lane(s.steps.time_low, i, R(0));
+        if constexpr (on_path) begin_path(i, t);
         lay(i, t);
         set_lane(s.data.h_next, i, get_lane(s.steps.step, i));
     }
@@ -64,12 +65,14 @@ struct fixed_stepping {
     MYRIAD_FUNCTION void propose(const mask& locating) {
         s.final_step = (s.steps.left <= count(1)) & !locating;
         s.h = has_events<Model> ? select(locating, s.data.h_next, s.steps.step) : s.steps.step;
+        if constexpr (on_path) s.steps.to = detail::moved(s.steps.from, s.steps.per_step);
         if (MYRIAD_UNLIKELY(any(s.final_step))) {
             for_each_lane(s.running() & s.final_step, [&](int i) MYRIAD_LAMBDA {
                 R beyond = detail::elapsed_beyond(args.t[s.instance[i]], stop_of(i),
                                                   static_cast<R>(get_lane(s.steps.done, i)), get_lane(s.steps.step, i));
                 if constexpr (keeps_low) beyond += get_lane(s.steps.time_low, i);
                 set_lane(s.h, i, -beyond);
+                if constexpr (on_path) detail::set_place(s.steps.to, i, place_of_stop(i, -beyond));
             });
         }
     }
@@ -97,6 +100,10 @@ struct fixed_stepping {
     MYRIAD_FUNCTION mask advance(const mask& accepted, const S& t1, const mask& at_event) {
         s.steps.done = count_where(accepted, s.steps.done);
         s.steps.left = select(accepted, s.steps.left - count(1), s.steps.left);
+        if constexpr (on_path) {
+            s.steps.from.cell = select(accepted, s.steps.to.cell, s.steps.from.cell);
+            s.steps.from.part = select(accepted, s.steps.to.part, s.steps.from.part);
+        }
         if constexpr (has_events<Model>) {
             for_each_lane(accepted & at_event & !s.final_step, [&](int i) MYRIAD_LAMBDA {
                 // the last step taken was shorter than the others
@@ -124,6 +131,27 @@ struct fixed_stepping {
     }
 
 private:
+    static constexpr bool on_path = stochastic_method<Method>;
+
+    /// Where lane i begins on its path. Where phases go back to t_begin, each has a path of its own.
+    MYRIAD_FUNCTION void begin_path(int i, R t) {
+        const std::int64_t index = s.instance[i];
+        s.steps.path.set(i, args.first_index + index, args.carry_time ? 0 : args.phase[index]);
+        detail::set_place(s.steps.from, i, place_at(i, t));
+    }
+    /// The place of a time on the path of lane i, which counts from the instance's t_begin.
+    MYRIAD_FUNCTION path_place<R> place_at(int i, R t) const {
+        const R t_begin = args.t_begin != nullptr ? args.t_begin[s.instance[i]] : args.common_t_begin;
+        return detail::place_of_length(t - t_begin, args.noise.cell);
+    }
+    /// The place at the end of a last step of that length. Counted from t_begin, so that roundings to a place do not
+    /// add up; in single precision, where t tells fewer cells apart than steps are counted, from the beginning of the
+    /// step.
+    MYRIAD_FUNCTION path_place<R> place_of_stop(int i, R length) const {
+        if constexpr (sizeof(R) == sizeof(double)) return place_at(i, stop_of(i));
+        return detail::moved(detail::get_place(s.steps.from, i), detail::place_of_length(length, args.noise.cell));
+    }
+
     /// The number of steps gives the time; it is only stored if something reads it.
     static constexpr bool shows_time = has_after_step<Model> || has_events<Model> || has_stops<Model>;
 
@@ -141,6 +169,8 @@ private:
         args.t[s.instance[i]] = t;
         set_lane(s.steps.base, i, t);
         set_lane(s.steps.step, i, signed_step);
+        if constexpr (on_path)
+            detail::set_place(s.steps.per_step, i, detail::place_of_length(signed_step, args.noise.cell));
         set_count(s.steps.done, i, 0);
         set_count(s.steps.left, i, bounded);
     }

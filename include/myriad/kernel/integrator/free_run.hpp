@@ -18,6 +18,12 @@ struct free_run {
     using count = count_of<S>;
     using iteration_number = typename integration_state<Model, Method, S>::iteration_number;
     static constexpr auto n = n_state<Model>;
+    static constexpr bool on_path = stochastic_method<Method>;
+    struct nothing {};
+    struct place_on_path {
+        path_place<S> from;
+    };
+    using path_of_run = std::conditional_t<on_path, place_on_path, nothing>;
 
     const kernel_arguments<Model, R>& args;
     integration_state<Model, Method, S>& s;
@@ -45,6 +51,8 @@ struct free_run {
         vec<S, n> y = s.data.y;
         count done = s.steps.done;
         iteration_number taken = 0, block = longest_block;
+        path_of_run path{};
+        if constexpr (on_path) path.from = s.steps.from;
         while (taken < run) {
             if constexpr (!is_pack<S>) {  // which has no other check before the end
                 if (MYRIAD_UNLIKELY(taken % asks_every == 0) &&
@@ -55,11 +63,17 @@ struct free_run {
             }
             block = block < run - taken ? block : run - taken;
             vec<S, n> now = y;
-            MYRIAD_UNROLL_BY(4)
+            path_of_run ahead = path;
+            MYRIAD_UNROLL_BY(on_path ? 1 : 4)
             for (iteration_number i = 0; i < block; ++i) {
                 trial_step<Method, S, n> trial;
                 const S t = fma(S(done + count(static_cast<lane_of<count>>(i))), step, base);
                 trial.slope_start() = detail::evaluate_rhs<Model>(t, now, p);
+                if constexpr (on_path) {
+                    const path_place<S> from = ahead.from;
+                    ahead.from = detail::moved(from, s.steps.per_step);
+                    trial.noise = {from, ahead.from, s.steps.path, args.noise};
+                }
                 detail::take_trial_step<Method, Model>(t, step, t + step, now, p, trial);
                 now = trial.y;
             }
@@ -69,10 +83,12 @@ struct free_run {
                 continue;
             }
             y = now;
+            path = ahead;
             done = done + count(static_cast<lane_of<count>>(block));
             taken += block;
         }
         s.data.y = y;
+        if constexpr (on_path) s.steps.from = path.from;
         fixed_stepping<Model, Method, S>{args, s}.count_steps(done - s.steps.done);
         s.iteration += taken;
         return ending;

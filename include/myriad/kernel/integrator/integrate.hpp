@@ -93,6 +93,7 @@ struct integrator {
         s.active = mask(false);
         s.ended = mask(true);
         s.clear_iterations(args);
+        if constexpr (stochastic_method<Method>) s.steps.clear_path();
         MYRIAD_UNROLL
         for (int i = 0; i < lanes_of<S>; ++i) s.instance[i] = -1;
     }
@@ -148,6 +149,7 @@ struct integrator {
 
     MYRIAD_FUNCTION void take_step(trial_type& trial) {
         detail::copy_components(trial.slope_start(), s.slopes.first_stage(s.now(), s.data));
+        if constexpr (stochastic_method<Method>) trial.noise = s.steps.interval(args.noise);
         detail::take_trial_step<Method, Model>(s.now(), s.h, end_time(), s.data.y, s.data, trial);
     }
 
@@ -218,6 +220,7 @@ template <class Model, class Method, class S, class Source>
 MYRIAD_FUNCTION std::int64_t integrate(const kernel_arguments<Model, real_of<S>>& args,
                                        const shared_parameters<real_of<S>>& shared, Source& source) {
     static_assert(hooks_fit<Model, real_of<S>>);
+    static_assert(noise_fits<Model, Method, real_of<S>>);
     static_assert(stepper<Method, Model, S>);
     event_memories<Model, real_of<S>, lanes_of<S>> memory;  // outside the loop's own state, which is in registers
     integrator<Model, Method, S> loop{args, {}, {}, &memory};

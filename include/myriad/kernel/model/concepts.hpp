@@ -36,6 +36,8 @@ MYRIAD_COMPONENT_KINDS(MYRIAD_COUNT_OF_UNIT)
 #undef MYRIAD_COUNT_OF_UNIT
 MYRIAD_MODEL_COUNT(n_unit_observed)
 MYRIAD_MODEL_COUNT(n_publication)
+/// Number of Wiener processes that the states of a model share; zero if each state has its own.
+MYRIAD_MODEL_COUNT(n_noise)
 /// Number of coupled units; zero of a model that is written as a whole.
 MYRIAD_MODEL_COUNT(n_unit)
 #undef MYRIAD_MODEL_COUNT
@@ -121,6 +123,8 @@ MYRIAD_MODEL_DECLARATION(rare_events)
 MYRIAD_MODEL_DECLARATION(large_rhs)
 /// The right-hand side does not depend on t, so that stiff methods need no derivative by it.
 MYRIAD_MODEL_DECLARATION(autonomous)
+/// The diffusion does not depend on the state.
+MYRIAD_MODEL_DECLARATION(additive_noise)
 #undef MYRIAD_MODEL_DECLARATION
 
 /// The model has derivatives by the ends of its time domain, for which phases tell where they begin and end.
@@ -171,6 +175,7 @@ MYRIAD_HOOK_NAME(condition)
 MYRIAD_HOOK_NAME(after_trigger)
 MYRIAD_HOOK_NAME(finalise)
 MYRIAD_HOOK_NAME(publish)
+MYRIAD_MEMBER_NAME(diffusion)
 #define MYRIAD_NAME_OF_COUNT(kind, ...) \
     MYRIAD_MEMBER_NAME(n_##kind)        \
     template <class Model>              \
@@ -188,6 +193,14 @@ template <class Model>
 inline constexpr bool stop_time_is_a_value = requires {
     sizeof(decltype(Model::stop_time));
 };
+/// Whether a model has a component or constant `diffusion`, which is no function.
+template <class Model>
+inline constexpr bool diffusion_is_a_value = requires {
+    sizeof(decltype(Model::diffusion));
+};
+/// Whether a model is a stochastic equation.
+template <class Model>
+inline constexpr bool has_diffusion = names_diffusion<whole_of<Model>>() && !diffusion_is_a_value<Model>;
 /// Whether actions follow conditions of several event functions. A `condition` alone may be a function of the model's.
 template <class Model>
 inline constexpr bool has_triggers = n_trigger<Model> > 0;

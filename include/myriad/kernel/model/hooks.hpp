@@ -11,6 +11,7 @@
 #include "myriad/kernel/model/event_signs.hpp"
 #include "myriad/kernel/model/jacobian_pattern.hpp"
 #include "myriad/kernel/model/lane.hpp"
+#include "myriad/kernel/model/noise.hpp"
 #include "myriad/kernel/model/summaries.hpp"
 #include "myriad/kernel/scalar/matrix_loop.hpp"
 
@@ -121,6 +122,17 @@ constexpr bool check_hooks(const vec<R, n_state<Model>>* y = nullptr, const inpu
             (Model::template observe<R>(R{}, *y, *p)), std::same_as<observed_values>,
             "observe has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static myriad::vec<R, "
             "n_observed> observe(auto t, const myriad::vec<R, n_state>& y, const auto& p)`, and public")
+    }
+    if constexpr (has_diffusion<Model>) {
+        using factors = diffusion_type<Model, R>;
+        MYRIAD_CHECK_ORDER(diffusion)
+        MYRIAD_CHECK_ORDER_OF_ONE(diffusion, factors)
+        MYRIAD_CHECK_CALL(
+            (Model::template diffusion<R>(R{}, *y, *p)), std::same_as<factors>,
+            "diffusion has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static myriad::vec<R, "
+            "n_state> diffusion(auto t, const myriad::vec<R, n_state>& y, const auto& p)`, a factor for each state, "
+            "or, in a model with `enum noise { ..., n_noise };`, return myriad::vec<myriad::vec<R, n_noise>, n_state>, "
+            "a row for each state, and be public")
     }
     if constexpr (has_initialise<Model>) {
         MYRIAD_CHECK_CALL((Model::initialise(*l)), std::same_as<void>,

@@ -14,7 +14,7 @@ struct model_numbers {
 #define MYRIAD_DECLARE_NUMBER(kind, ...) std::int32_t n_##kind;
     MYRIAD_COMPONENT_KINDS(MYRIAD_DECLARE_NUMBER)
 #undef MYRIAD_DECLARE_NUMBER
-    bool writes_parameters, writes_time_domain;
+    bool writes_parameters, writes_time_domain, has_diffusion;
 
     constexpr bool operator==(const model_numbers&) const = default;
 };
@@ -45,6 +45,7 @@ inline constexpr model_numbers numbers_of{
 #undef MYRIAD_NUMBER_OF
         .writes_parameters = writes_parameters<Model>,
     .writes_time_domain = writes_time_domain<Model>,
+    .has_diffusion = has_diffusion<Model>,
 };
 
 }  // namespace myriad::detail

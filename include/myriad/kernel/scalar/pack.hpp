@@ -271,3 +271,4 @@ inline constexpr int kind_rank<pack_mask<T, batches>> = 1;
 }  // namespace myriad::detail::inline MYRIAD_TARGET
 
 #include "myriad/kernel/scalar/pack_math.hpp"
+#include "myriad/kernel/scalar/pack_normal_numbers.hpp"

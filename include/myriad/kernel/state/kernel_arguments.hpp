@@ -9,6 +9,7 @@
 #include "myriad/kernel/core/team.hpp"
 #include "myriad/kernel/model/concepts.hpp"
 #include "myriad/kernel/model/model_facts.hpp"
+#include "myriad/kernel/model/path_constants.hpp"
 #include "myriad/kernel/state/instance_arrays.hpp"
 
 namespace myriad {
@@ -141,11 +142,13 @@ struct argument_offsets {
         MYRIAD_ARGUMENT_ARRAYS(MYRIAD_PLACE_ARRAY)
 #undef MYRIAD_PLACE_ARRAY
         constexpr int unit = static_cast<int>(sizeof(R));
-        end = (end + unit - 1) / unit * unit;
+        noise = (end + unit - 1) / unit * unit;
+        end = noise + (of.has_diffusion ? static_cast<int>(sizeof(path_constants<R>)) : 0);
     }
 #define MYRIAD_DECLARE_OFFSET(type, name, count) int name = 0;
     MYRIAD_ARGUMENT_ARRAYS(MYRIAD_DECLARE_OFFSET)
 #undef MYRIAD_DECLARE_OFFSET
+    int noise = 0;  // of a model with a diffusion
     int end = 0;
 };
 
@@ -163,9 +166,18 @@ public:
 #undef MYRIAD_DECLARE_ARRAY
 };
 
+/// What kernels of models with a diffusion have behind the arrays.
+template <class Model, class R>
+struct noise_arguments {};
+template <class Model, class R>
+requires has_diffusion<Model>
+struct noise_arguments<Model, R> {
+    path_constants<R> noise;
+};
+
 /// The arguments of a kernel.
 template <class Model, class R>
-struct kernel_arguments : argument_head<R>, argument_arrays<Model, R> {};
+struct kernel_arguments : argument_head<R>, argument_arrays<Model, R>, noise_arguments<Model, R> {};
 
 /// How many actions of stops or of triggers at one instant are too many: triggers may put theirs into one queue, and so
 /// each of them counts.

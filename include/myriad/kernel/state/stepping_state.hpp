@@ -6,6 +6,8 @@
 #include <type_traits>
 
 #include "myriad/kernel/methods/controller_policies.hpp"
+#include "myriad/kernel/methods/stochastic_method.hpp"
+#include "myriad/kernel/model/wiener_path.hpp"
 #include "myriad/kernel/scalar/control_number.hpp"
 #include "myriad/kernel/scalar/lanes.hpp"
 #include "myriad/kernel/scalar/math.hpp"
@@ -44,7 +46,26 @@ struct fixed_state {
     MYRIAD_FUNCTION S time() const { return fma(S(done), step, base); }
 };
 
+/// The same of a stochastic equation, with the part of the path that the next step covers.
+template <class S>
+struct fixed_state_on_path : fixed_state<S> {
+    path_place<S> from, to, per_step;  // the length of a step, with its sign
+    path_owner<S> path;
+
+    /// A lane without an instance stays where it is.
+    MYRIAD_FUNCTION void clear_path() {
+        using integers = path_integers<S>;
+        from = to = per_step = {typename integers::cell(0), typename integers::small(0)};
+        path = {typename integers::word(0), typename integers::word(0)};
+    }
+    MYRIAD_FUNCTION path_interval<S> interval(const path_constants<real_of<S>>& constants) const {
+        return {from, to, path, constants};
+    }
+};
+
 template <class Method, class S>
-using stepping_state = std::conditional_t<is_adaptive<Method>, adaptive_state<Method, S>, fixed_state<S>>;
+using stepping_state =
+    std::conditional_t<is_adaptive<Method>, adaptive_state<Method, S>,
+                       std::conditional_t<stochastic_method<Method>, fixed_state_on_path<S>, fixed_state<S>>>;
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET

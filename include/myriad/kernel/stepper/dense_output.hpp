@@ -25,7 +25,8 @@ template <class Method>
 inline constexpr int interpolant_stages = Method::stages + (extra_stages<Method> > 0 ? 1 + extra_stages<Method> : 0);
 /// Whether an interpolant needs the slope at the end of the step in addition to the step's stages.
 template <class Method>
-inline constexpr bool interpolates_with_slope_end = !has_own_interpolant<Method> || (extra_stages<Method> > 0);
+inline constexpr bool interpolates_with_slope_end =
+    !stochastic_method<Method> && (!has_own_interpolant<Method> || (extra_stages<Method> > 0));
 
 /// Coefficient of theta^(power + 1) in the weight of a stage.
 template <class Method, int stage, int power, class R>
@@ -143,6 +144,10 @@ MYRIAD_FUNCTION vec<T, n> interpolate(const step_data<Method, S, n>& step, const
             });
             out[c] = step.y[c] + increment;
         }
+    } else if constexpr (stochastic_method<Method>) {
+        const auto inside = detail::linear_interpolation(step, theta);
+        MYRIAD_UNROLL
+        for (int c = 0; c < MYRIAD_LENGTH(n); ++c) out[c] = inside(c);
     } else {
         out = detail::hermite_interpolation(step.y, step.trial.y, step.trial.slope_start(), step.slope_end, step.h,
                                             theta);

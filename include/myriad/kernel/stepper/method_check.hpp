@@ -196,7 +196,7 @@ constexpr bool check_interpolant() {
 /// Refuses a method whose coefficients do not satisfy its claims. For orders above five only some of the conditions are
 /// checked.
 template <class Method>
-constexpr bool check_method() {
+constexpr bool check_method() requires(!stochastic_method<Method>) {
     constexpr bool complete = requires {
         Method::stages;
         Method::order;
@@ -233,6 +233,21 @@ constexpr bool check_method() {
             if constexpr (has_own_interpolant<Method>) static_assert(check_interpolant<Method>());
         }
     }
+    return true;
+}
+
+/// Methods for stochastic equations have no tableau whose order could be checked.
+template <class Method>
+constexpr bool check_method() requires stochastic_method<Method> {
+    constexpr bool complete = requires {
+        Method::stages;
+        Method::first_same_as_last;
+        requires Method::embedded_order == 0 && !Method::first_same_as_last;
+    };
+    static_assert(complete,
+                  "a method for stochastic equations is a struct with `static constexpr` members stages, "
+                  "embedded_order (0), first_same_as_last (false), strong_order, weak_order and noise, and a function "
+                  "step");
     return true;
 }
 

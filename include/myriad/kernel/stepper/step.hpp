@@ -5,6 +5,7 @@
 #include "myriad/kernel/stepper/explicit_rk.hpp"
 #include "myriad/kernel/stepper/rosenbrock.hpp"
 #include "myriad/kernel/stepper/rosenbrock_loop.hpp"
+#include "myriad/kernel/stepper/stochastic_step.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
@@ -26,6 +27,10 @@ MYRIAD_FUNCTION void take_trial_step(const S& t, const S& h, const S& t1, const 
         } else {
             detail::rosenbrock_step<Method, Model>(t, h, t1, y, p, trial);
         }
+    } else if constexpr (stochastic_method<Method>) {
+        static_assert(!has_mass_matrix<Model>,
+                      "the model has a mass_matrix, which methods for stochastic equations do not take");
+        detail::stochastic_step<Method, Model>(t, h, t1, y, p, trial);
     } else {
         static_assert(!has_mass_matrix<Model>,
                       "the model has a mass_matrix, which explicit methods do not take: use rodas_5p");

@@ -10,7 +10,7 @@
 namespace myriad::python {
 
 /// Changes with what the core and compiled models exchange.
-inline constexpr std::uint32_t interface_version = 10;
+inline constexpr std::uint32_t interface_version = 11;
 
 struct compiled_facts {
     std::uint32_t interface_version;

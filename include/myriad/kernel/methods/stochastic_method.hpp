@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+// What a method for stochastic equations is.
+#pragma once
+
+namespace myriad::detail {
+
+/// A method for stochastic equations says with which orders it converges, and takes one step by the functions of a
+/// `noisy_equation` (stepper/stochastic_step.hpp):
+///
+///     strong_order, weak_order     with which a path and averages over paths converge
+///     noise                        the pattern of noise that it takes
+///     step(equation, t, h, t1, y, slope)
+///                                  the state at t1, which is t + h up to rounding; `slope` is the drift at (t, y)
+///
+///     uses_integrals               if it takes integrals of the path over a step, beside its increments
+///
+/// beside `stages`, the evaluations of the drift, embedded_order (0: fixed steps) and first_same_as_last (false).
+template <class Method>
+concept stochastic_method = requires {
+    Method::strong_order;
+    Method::weak_order;
+    Method::noise;
+};
+
+}  // namespace myriad::detail
+
+namespace myriad::detail {
+
+/// Whether a method takes integrals of the path.
+template <class Method>
+inline constexpr bool uses_integrals = requires {
+    requires Method::uses_integrals;
+};
+
+}  // namespace myriad::detail
+
+namespace myriad {
+
+/// The noise that a method takes.
+enum class noise_taken {
+    any,       ///< any diffusion
+    additive,  ///< a diffusion that does not depend on the state
+    diagonal,  ///< a Wiener process for each state, whose factor depends on no other state; or additive noise
+};
+
+}  // namespace myriad

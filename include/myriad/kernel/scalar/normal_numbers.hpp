@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+// Normal numbers from counters, without branches: a block of Philox and the transform of Box and Muller, for one plain
+// real or one SIMD batch, by the same operations in the same order.
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <type_traits>
+
+#include "myriad/kernel/core/macros.hpp"
+#include "myriad/kernel/core/vec.hpp"
+#include "myriad/kernel/scalar/arithmetic.hpp"
+#include "myriad/kernel/scalar/exponential.hpp"
+#include "myriad/kernel/scalar/math.hpp"
+#include "myriad/kernel/scalar/trigonometry.hpp"
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+/// Words of 32 bits, one for each lane of B, a plain real or, in pack_normal_numbers.hpp, a batch. Bits above the 32nd
+/// may be anything there.
+template <class B>
+struct random_words;
+
+template <std::floating_point T>
+struct random_words<T> {
+    using word = std::uint32_t;
+    struct product {
+        word high, low;
+    };
+
+    static MYRIAD_FUNCTION product multiply(word a, std::uint32_t by) {
+        const std::uint64_t all = std::uint64_t{by} * a;
+        return {static_cast<word>(all >> 32), static_cast<word>(all)};
+    }
+    /// The number in [1, 2) that has these 52 bits after the point.
+    static MYRIAD_FUNCTION double from_one_to_two(word low, word high) {
+        const std::uint64_t bits = std::uint64_t{high} << 32 | low;
+        return __builtin_bit_cast(double, bits >> 12 | 0x3ff0000000000000);
+    }
+    /// The word as an integer with a sign, without its last bit if `halved`, rounded.
+    static MYRIAD_FUNCTION float whole(word a) { return static_cast<float>(static_cast<std::int32_t>(a)); }
+    static MYRIAD_FUNCTION float half_of(word a) { return static_cast<float>(static_cast<std::int32_t>(a >> 1)); }
+    static MYRIAD_FUNCTION T root(T x) { return functions<T>::sqrt(x); }
+};
+
+/// Philox4x32-10 of the counter w, in its place (model/random.hpp has the source).
+template <class B>
+MYRIAD_FUNCTION void philox_of_words(typename random_words<B>::word (&w)[4], std::uint32_t key_0, std::uint32_t key_1) {
+    using words = random_words<B>;
+    MYRIAD_UNROLL
+    for (int round = 0; round < 10; ++round) {
+        const auto a = words::multiply(w[0], 0xd2511f53), b = words::multiply(w[2], 0xcd9e8d57);
+        w[0] = b.high ^ w[1] ^ typename words::word(key_0);
+        w[2] = a.high ^ w[3] ^ typename words::word(key_1);
+        w[1] = b.low;
+        w[3] = a.low;
+        key_0 += 0x9e3779b9;
+        key_1 += 0xbb67ae85;
+    }
+}
+
+/// How many normal numbers one block gives.
+template <class R>
+inline constexpr int normals_per_block = sizeof(R) == sizeof(double) ? 2 : 4;
+
+/// Two independent normal numbers from u in (0, 1] and an angle in half turns: Box and Muller, Ann. Math. Statist. 29
+/// (1958) 610.
+template <class B>
+MYRIAD_FUNCTION void box_muller(const B& u, const B& half_turns, B& first, B& second) {
+    using T = typename arithmetic<B>::real;
+    const B radius = random_words<B>::root(B(T(-2)) * exponential<B>::log(u));
+    B sine, cosine;
+    trigonometry<B>::sincospi(half_turns, sine, cosine);
+    first = radius * cosine;
+    second = radius * sine;
+}
+
+/// The normal numbers of a counter. In double precision u is the midpoint of one of 2^52 equal parts of (0, 1), so that
+/// they are within +-8.6; in single precision a multiple of 2^-31 and 2^-32 more, rounded, which gives +-6.66.
+template <class B>
+MYRIAD_FUNCTION void normal_numbers(typename random_words<B>::word (&w)[4], std::uint32_t key_0, std::uint32_t key_1,
+                                    B (&z)[normals_per_block<typename arithmetic<B>::real>]) {
+    using A = arithmetic<B>;
+    using T = typename A::real;
+    using words = random_words<B>;
+    detail::philox_of_words<B>(w, key_0, key_1);
+    if constexpr (sizeof(T) == sizeof(double)) {
+        const B u = words::from_one_to_two(w[0], w[1]) - B(T(1 - 0x1p-53));
+        const B angle = A::multiply_add(B(T(2)), words::from_one_to_two(w[2], w[3]), B(T(-3)));
+        detail::box_muller(u, angle, z[0], z[1]);
+    } else {
+        const auto pair = [&](const auto& of_radius, const auto& of_angle, B& first, B& second) MYRIAD_LAMBDA {
+            const B u = A::multiply_add(words::half_of(of_radius), B(T(0x1p-31)), B(T(0x1p-32)));
+            detail::box_muller(u, words::whole(of_angle) * B(T(0x1p-31)), first, second);
+        };
+        pair(w[0], w[1], z[0], z[1]);
+        pair(w[2], w[3], z[2], z[3]);
+    }
+}
+
+/// Groups of processes. Those whose numbers are higher by this draw more of the same processes: path_integral.hpp.
+inline constexpr int groups_of_increments = 128;
+
+/// Integers of the lanes of S as paths have them: the numbers of cells, which single precision cannot tell apart beyond
+/// 32 bits; small numbers; and words of a counter.
+template <class S>
+struct path_integers {
+    using cell = std::conditional_t<sizeof(S) == sizeof(double), std::int64_t, std::int32_t>;
+    using small = std::int32_t;
+    using word = std::uint32_t;
+};
+
+/// What a block of a path is the block of. The counter is (the low word of `cell`; `owner`; 8 bits of `cell`, 16 of
+/// `node`, 8 of `group`; `epoch`).
+template <class S>
+struct block_place {
+    typename path_integers<S>::cell cell;
+    typename path_integers<S>::small node;
+    int group;
+    typename path_integers<S>::word owner, epoch;
+};
+
+/// The normal numbers of a block, in every lane.
+template <class S>
+struct normals_of {
+    static MYRIAD_FUNCTION vec<S, normals_per_block<S>> at(const block_place<S>& p, std::uint32_t key_0,
+                                                           std::uint32_t key_1) {
+        const auto high = static_cast<std::uint32_t>(static_cast<std::uint64_t>(std::int64_t{p.cell}) >> 32);
+        std::uint32_t w[4] = {
+            static_cast<std::uint32_t>(p.cell), p.owner,
+            high << 24 | static_cast<std::uint32_t>(p.node) << 8 | static_cast<std::uint32_t>(p.group), p.epoch};
+        S z[normals_per_block<S>];
+        detail::normal_numbers<S>(w, key_0, key_1, z);
+        vec<S, normals_per_block<S>> all;
+        MYRIAD_UNROLL
+        for (int k = 0; k < normals_per_block<S>; ++k) all[k] = z[k];
+        return all;
+    }
+};
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET

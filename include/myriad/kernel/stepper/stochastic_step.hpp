@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+// One step of a method for stochastic equations: the increments of the path, and what methods ask of the equation.
+#pragma once
+
+#include "myriad/kernel/core/vec.hpp"
+#include "myriad/kernel/methods/stochastic_method.hpp"
+#include "myriad/kernel/model/jacobian.hpp"
+#include "myriad/kernel/model/lane.hpp"
+#include "myriad/kernel/model/noise.hpp"
+#include "myriad/kernel/model/path_integral.hpp"
+#include "myriad/kernel/model/wiener_path.hpp"
+#include "myriad/kernel/scalar/dual.hpp"
+#include "myriad/kernel/stepper/explicit_rk.hpp"
+
+namespace myriad::detail::inline MYRIAD_TARGET {
+
+/// The result of a trial step. `noise`, the part of the path that it covers, is set before, as the slope at its start.
+template <class Method, class S, extent n>
+requires stochastic_method<Method>
+struct trial_step<Method, S, n> {
+    vec<S, n> slope, y;
+    path_interval<S> noise;
+
+    MYRIAD_FUNCTION vec<S, n>& slope_start() { return slope; }
+    MYRIAD_FUNCTION const vec<S, n>& slope_start() const { return slope; }
+};
+
+/// What a method asks of an equation dy = f(t, y) dt + g(t, y) dW over one step, in which the increments dW are known.
+template <class Model, class S, bool with_integrals = false>
+struct noisy_equation {
+    static constexpr auto n = n_state<Model>;
+    static constexpr auto m = n_wiener<Model>;
+
+    const inputs<Model, S>& p;
+    vec<S, m> increments;
+    vec<S, with_integrals ? m : 0> integrals;  // of W(s) - W(t) over the step
+
+    /// f
+    MYRIAD_FUNCTION vec<S, n> drift(const S& t, const vec<S, n>& y) const {
+        return detail::evaluate_rhs<Model>(t, y, p);
+    }
+    /// The means of W(s) - W(t) over the step.
+    MYRIAD_FUNCTION vec<S, m> mean_increments(const S& h) const {
+        vec<S, m> mean;
+        MYRIAD_UNROLL_UP_TO(64, 16)
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) mean[j] = integrals[j] / h;
+        return mean;
+    }
+    /// g dW
+    MYRIAD_FUNCTION vec<S, n> noise(const S& t, const vec<S, n>& y) const { return times(t, y, increments); }
+    /// The product of g and one number for each process.
+    MYRIAD_FUNCTION vec<S, n> times(const S& t, const vec<S, n>& y, const vec<S, m>& by) const {
+        const auto g = Model::template diffusion<S>(t, y, p);
+        vec<S, n> sum;
+        MYRIAD_UNROLL_UP_TO(64, 16)
+        for (int c = 0; c < MYRIAD_LENGTH(n); ++c) {
+            if constexpr (has_general_noise<Model>) {
+                sum[c] = g[c][0] * by[0];
+                MYRIAD_UNROLL_UP_TO(64, 16)
+                for (int j = 1; j < MYRIAD_LENGTH(m); ++j) sum[c] = fma(g[c][j], by[j], sum[c]);
+            } else {
+                sum[c] = g[c] * by[c];
+            }
+        }
+        return sum;
+    }
+    /// g dW + g g' (dW^2 - h) / 2 of diagonal noise, where g' is the derivative of a state's factor by that state: one
+    /// evaluation with dual numbers gives all, as a factor depends on no other state.
+    MYRIAD_FUNCTION vec<S, n> noise_with_correction(const S& t, const S& h, const vec<S, n>& y) const {
+        if constexpr (is_additive<Model>) {
+            return noise(t, y);
+        } else {
+            vec<dual<S>, n> seeded;
+            MYRIAD_UNROLL_UP_TO(64, 16)
+            for (int c = 0; c < MYRIAD_LENGTH(n); ++c) seeded[c] = dual<S>(y[c], S(real_of<S>(1)));
+            const auto g = Model::template diffusion<dual<S>>(dual<S>(t), seeded, p);
+            const S half(real_of<S>(0.5));
+            vec<S, n> sum;
+            MYRIAD_UNROLL_UP_TO(64, 16)
+            for (int c = 0; c < MYRIAD_LENGTH(n); ++c) {
+                const S dw = increments[c], excess = half * fma(dw, dw, -h);
+                sum[c] = g[c].value * fma(g[c].derivative, excess, dw);
+            }
+            return sum;
+        }
+    }
+};
+
+/// Steps from (t, y) by h to t1 along the path; `trial.slope` and `trial.noise` are given.
+template <class Method, class Model, class S>
+MYRIAD_FUNCTION void stochastic_step(const S& t, const S& h, const S& t1, const vec<S, n_state<Model>>& y,
+                                     const inputs<Model, S>& p, trial_step<Method, S, n_state<Model>>& trial) {
+    constexpr auto m = n_wiener<Model>;
+    if constexpr (uses_integrals<Method>) {
+        const increments_with_integrals<S, m> of_path = detail::path_integrals<m>(trial.noise);
+        const noisy_equation<Model, S, true> equation{p, of_path.increment, of_path.integral};
+        trial.y = Method::step(equation, t, h, t1, y, trial.slope);
+    } else {
+        const noisy_equation<Model, S> equation{p, detail::path_increments<m>(trial.noise), {}};
+        trial.y = Method::step(equation, t, h, t1, y, trial.slope);
+    }
+}
+
+/// The state inside a step, at t + theta h: on the straight line between its ends. The path between them is not known,
+/// and the mean of a bridge is that line.
+template <class Step, class T>
+MYRIAD_FUNCTION auto linear_interpolation(const Step& step, const T& theta) {
+    return [&](int c) MYRIAD_LAMBDA { return fma(theta, step.trial.y[c] - step.y[c], step.y[c]); };
+}
+
+}  // namespace myriad::detail::inline MYRIAD_TARGET

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+// The orders of methods for stochastic equations, against solutions that are functions of the path, and moments.
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <myriad/myriad.hpp>
+
+#include "tests/catch.hpp"
+#include "tests/support/device.hpp"
+#include "tests/support/noisy.hpp"
+
+namespace {
+
+using noisy::sharing;
+using noisy::solvable;
+
+constexpr double end = 1, coarsest = 1.0 / 16, wide_start = 0.5;
+constexpr int halvings = 5;  // steps 1/16 to 1/256
+constexpr double finest = coarsest / (1 << (halvings - 1));
+
+myriad::ensemble<solvable> start(std::int64_t paths, bool ito) {
+    myriad::ensemble<solvable> e(paths);
+    e.state(solvable::growth) = 1;
+    e.state(solvable::wide) = wide_start;
+    e.state(solvable::decay) = 1;
+    e.parameter(solvable::ito) = ito ? 1 : 0;
+    e.parameter(solvable::bare) = 0;
+    e.time_domain(0, end);
+    return e;
+}
+/// The Wiener processes at the end of the same paths.
+myriad::ensemble<solvable> wiener(std::int64_t paths, std::int64_t seed) {
+    myriad::ensemble<solvable> e = start(paths, true);
+    for (int c = 0; c < solvable::n_state; ++c) e.state(c) = 0;
+    e.parameter(solvable::bare) = 1;
+    myriad::solve<myriad::euler_maruyama>(tests::test_device(2), e, {.step = finest, .seed = seed});
+    return e;
+}
+
+/// The slope of the line through (k, y[k]) by least squares.
+double slope(const std::array<double, halvings>& y) {
+    double above = 0, below = 0;
+    for (int k = 0; k < halvings; ++k) {
+        const double from_middle = k - (halvings - 1) / 2.0;
+        above += from_middle * y[static_cast<std::size_t>(k)];
+        below += from_middle * from_middle;
+    }
+    return above / below;
+}
+
+struct orders {
+    double growth, wide;
+};
+/// The orders with which the paths of the equations with multiplicative noise converge in the mean: all steps follow
+/// the same path, whose cells are the finest steps.
+template <class Method>
+orders strong_orders(bool ito) {
+    constexpr std::int64_t paths = 4000, seed = 3;
+    const auto w = wiener(paths, seed);
+    const Eigen::ArrayXd growth = (solvable::rate * end + solvable::factor * w.state(solvable::growth)).exp();
+    const Eigen::ArrayXd wide = (std::asinh(wide_start) + solvable::wideness * w.state(solvable::wide)).sinh();
+    std::array<double, halvings> of_growth{}, of_wide{};
+    for (int k = 0; k < halvings; ++k) {
+        auto e = start(paths, ito);
+        myriad::solve<Method>(tests::test_device(2), e,
+                              {.step = coarsest / (1 << k), .seed = seed, .noise_step = finest});
+        of_growth[static_cast<std::size_t>(k)] = -std::log2((e.state(solvable::growth) - growth).abs().mean());
+        of_wide[static_cast<std::size_t>(k)] = -std::log2((e.state(solvable::wide) - wide).abs().mean());
+    }
+    return {slope(of_growth), slope(of_wide)};
+}
+
+}  // namespace
+
+TEST_CASE("euler_maruyama has strong order one half for Ito equations") {
+    const orders found = strong_orders<myriad::euler_maruyama>(true);
+    CHECK(found.growth == Approx(0.5).margin(0.05));
+    CHECK(found.wide == Approx(0.5).margin(0.05));
+}
+TEST_CASE("milstein has strong order one for Ito equations") {
+    const orders found = strong_orders<myriad::milstein>(true);
+    CHECK(found.growth == Approx(1).margin(0.05));
+    CHECK(found.wide == Approx(1).margin(0.05));
+}
+TEST_CASE("stochastic_heun has strong order one for Stratonovich equations") {
+    const orders found = strong_orders<myriad::stochastic_heun>(false);
+    CHECK(found.growth == Approx(1).margin(0.05));
+    CHECK(found.wide == Approx(1).margin(0.05));
+}
+
+TEST_CASE("sra1 has strong order three halves for additive noise, and two if the drift is linear") {
+    using noisy::additive;
+    constexpr std::int64_t paths = 2000, seed = 3;
+    const auto at_end = [](double step) {
+        myriad::ensemble<additive> e(paths);
+        e.state(additive::x) = 0;
+        e.state(additive::wave) = 0.1;
+        e.time_domain(0, end);
+        myriad::solve<myriad::sra1>(tests::test_device(2), e, {.step = step, .seed = seed, .noise_step = finest});
+        return e;
+    };
+    const auto w = wiener(paths, seed);
+    const Eigen::ArrayXd exact =
+        (additive::b * end + additive::a * additive::b * w.state(solvable::growth)) / std::sqrt(1 + end);
+    // Steps of a 16th of a cell, whose errors are 64 times less than those of the finest steps that are compared.
+    const auto of_reference = at_end(finest / 16);
+    const Eigen::ArrayXd reference = of_reference.state(additive::wave);
+    std::array<double, halvings> linear{}, curved{};
+    for (int k = 0; k < halvings; ++k) {
+        const auto e = at_end(coarsest / (1 << k));
+        linear[static_cast<std::size_t>(k)] = -std::log2((e.state(additive::x) - exact).abs().mean());
+        curved[static_cast<std::size_t>(k)] = -std::log2((e.state(additive::wave) - reference).abs().mean());
+    }
+    CHECK(slope(linear) == Approx(2).margin(0.05));
+    CHECK(slope(curved) == Approx(1.5).margin(0.05));
+}
+
+TEST_CASE("euler_maruyama has weak order one where the noise does not commute") {
+    // Differences between steps h and h / 2 along the same paths, whose spread is far below that of the values.
+    constexpr std::int64_t paths = 200'000;
+    std::array<double, 4> moment{};
+    for (int k = 0; k < 4; ++k) {
+        myriad::ensemble<sharing> e(paths);
+        e.state(sharing::x) = 1;
+        e.state(sharing::z) = 1;
+        e.time_domain(0, 3);
+        myriad::solve<myriad::euler_maruyama>(tests::test_device(2), e,
+                                              {.step = 0.375 / (1 << k), .seed = 11, .noise_step = 0.375 / 8});
+        moment[static_cast<std::size_t>(k)] = e.state(sharing::x).square().mean();
+    }
+    const double order = std::log2((moment[2] - moment[1]) / (moment[3] - moment[2]));
+    CHECK(order == Approx(1).margin(0.05));
+    // Extrapolated to h = 0, within four standard errors: the deviation of x^2 is some 1.1 times its mean.
+    CHECK(2 * moment[3] - moment[2] == Approx(std::exp(-3.0)).epsilon(4 * 1.1 / std::sqrt(paths) + 0.004));
+}
+
+TEST_CASE("means and variances of an Ornstein-Uhlenbeck process are those of the method") {
+    constexpr std::int64_t paths = 100'000;
+    constexpr double h = 1.0 / 32, left = 1 - h * solvable::damping;
+    auto e = start(paths, true);
+    myriad::solve<myriad::euler_maruyama>(tests::test_device(2), e, {.step = h, .seed = 5});
+    double mean = 1, variance = 0;
+    for (int k = 0; k < 32; ++k) {
+        mean *= left;
+        variance = left * left * variance + h * solvable::force * solvable::force;
+    }
+    const auto& x = e.state(solvable::decay);
+    const double found = x.mean(), spread = (x - found).square().sum() / (paths - 1);
+    CHECK(found == Approx(mean).margin(4 * std::sqrt(variance / paths)));
+    CHECK(spread == Approx(variance).epsilon(4 * std::sqrt(2.0 / paths)));
+    // and those converge to the process's own
+    CHECK(variance ==
+          Approx(solvable::force * solvable::force / (2 * solvable::damping) * (1 - std::exp(-2 * solvable::damping)))
+              .epsilon(0.03));
+}

@@ -1,0 +1,186 @@
+// case: diffusion_with_a_method_for_ordinary_equations
+// expect: the model has a diffusion, which methods for ordinary equations would ignore: use
+// case: diffusion_with_a_stiff_method
+// expect: the model has a diffusion, which methods for ordinary equations would ignore: use
+// case: stochastic_method_without_diffusion
+// expect: this method integrates stochastic equations, but the model has no diffusion: give it
+// case: milstein_with_shared_noise
+// expect: this method takes diagonal or additive noise alone, but the model has an `enum noise
+// case: milstein_with_factors_of_other_states
+// expect: this method takes noise whose factor of a state depends on no other state: use
+// case: sra1_with_noise_that_is_not_additive
+// expect: this method takes additive noise alone, but the diffusion may depend on the state
+// case: diffusion_of_another_size
+// expect: diffusion has a wrong signature: it must be
+// case: diffusion_of_processes_that_is_no_matrix
+// expect: diffusion has a wrong signature: it must be .*a row for each state
+// case: diffusion_with_the_inputs_before_the_states
+// expect: the arguments of diffusion are exchanged: they are the time, the states and the inputs, in this order
+// case: diffusion_with_events
+// expect: a model with a diffusion has no events yet: .*in after_step
+// case: diffusion_that_writes_its_time_domain
+// expect: a model with a diffusion may not declare writes_time_domain
+// case: diffusion_with_summaries
+// expect: a model with a diffusion has no summaries yet
+// case: diffusion_with_tangents
+// expect: with_tangents and with_sensitivities take no model with a diffusion
+// case: diffusion_with_sensitivities
+// expect: with_tangents and with_sensitivities take no model with a diffusion
+// case: diffusion_with_a_mass_matrix
+// expect: the model has a mass_matrix, which methods for stochastic equations do not take
+// case: diffusion_of_coupled_units
+// expect: coupled units have no diffusion yet
+// SPDX-License-Identifier: MIT
+// Stochastic equations with methods and parts that do not fit them.
+#include "myriad/coupled_units.hpp"
+#include "myriad/instantiate.hpp"
+#include "myriad/model.hpp"
+#include "myriad/sensitivity.hpp"
+#include "myriad/tangent.hpp"
+
+struct walk {
+    enum state { x, y, n_state };
+    enum parameter { k, n_parameter };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& s, const auto& p) {
+        return {-p[k] * s[x], s[x] - s[y]};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> diffusion(auto, const myriad::vec<R, n_state>& s, const auto& p) {
+        return {p[k] * s[x], s[y]};
+    }
+};
+MYRIAD_INSTANTIATE(walk, myriad::euler_maruyama, myriad::milstein, myriad::stochastic_heun)
+
+#if defined(CASE_diffusion_with_a_method_for_ordinary_equations)
+MYRIAD_INSTANTIATE(walk, myriad::cash_karp)
+#endif
+#if defined(CASE_diffusion_with_a_stiff_method)
+MYRIAD_INSTANTIATE(walk, myriad::rodas_5p)
+#endif
+#if defined(CASE_stochastic_method_without_diffusion)
+struct decay {
+    enum state { x, n_state };
+    enum parameter { diffusion, n_parameter };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& s, const auto& p) {
+        return myriad::vec<R, n_state>{-p[diffusion] * s[x]};
+    }
+};
+MYRIAD_INSTANTIATE(decay, myriad::euler_maruyama)
+#endif
+
+struct shared_noise : walk {
+    enum noise { W, n_noise };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<myriad::vec<R, n_noise>, n_state> diffusion(auto,
+                                                                                   const myriad::vec<R, n_state>& s,
+                                                                                   const auto&) {
+        return {myriad::vec<R, n_noise>{s[x]}, myriad::vec<R, n_noise>{s[y]}};
+    }
+};
+#if defined(CASE_milstein_with_shared_noise)
+MYRIAD_INSTANTIATE(shared_noise, myriad::milstein)
+#endif
+
+#if defined(CASE_milstein_with_factors_of_other_states)
+struct crossed : walk {
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> diffusion(auto, const myriad::vec<R, n_state>& s, const auto&) {
+        return {s[y], s[x]};
+    }
+};
+MYRIAD_INSTANTIATE(crossed, myriad::milstein)
+#endif
+#if defined(CASE_sra1_with_noise_that_is_not_additive)
+MYRIAD_INSTANTIATE(walk, myriad::sra1)
+#endif
+#if defined(CASE_diffusion_of_another_size)
+struct too_many : walk {
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, 3> diffusion(auto, const myriad::vec<R, n_state>& s, const auto&) {
+        return {s[y], s[x], s[x]};
+    }
+};
+MYRIAD_INSTANTIATE(too_many, myriad::euler_maruyama)
+#endif
+#if defined(CASE_diffusion_of_processes_that_is_no_matrix)
+struct no_matrix : walk {
+    enum noise { W, n_noise };
+};
+MYRIAD_INSTANTIATE(no_matrix, myriad::euler_maruyama)
+#endif
+#if defined(CASE_diffusion_with_the_inputs_before_the_states)
+struct exchanged : walk {
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> diffusion(auto, const auto& p, const myriad::vec<R, n_state>& s) {
+        return {s[y], p[k] * s[x]};
+    }
+};
+MYRIAD_INSTANTIATE(exchanged, myriad::euler_maruyama)
+#endif
+#if defined(CASE_diffusion_with_events)
+struct watched : walk {
+    enum event { crossing, n_event };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto, const myriad::vec<R, n_state>& s, const auto&) {
+        return myriad::vec<R, n_event>{s[x]};
+    }
+};
+MYRIAD_INSTANTIATE(watched, myriad::euler_maruyama)
+#endif
+#if defined(CASE_diffusion_that_writes_its_time_domain)
+struct moving : walk {
+    static constexpr bool writes_time_domain = true;
+
+    MYRIAD_FUNCTION static void initialise(auto& lane) { lane.t_end = lane.t_begin + 1; }
+};
+MYRIAD_INSTANTIATE(moving, myriad::euler_maruyama)
+#endif
+#if defined(CASE_diffusion_with_summaries)
+struct summarised : walk {
+    enum observed { square, n_observed };
+    enum accessory { largest, n_accessory };
+    static constexpr myriad::summary summaries[] = {{square, myriad::over_phase::maximum, largest}};
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_observed> observe(auto, const myriad::vec<R, n_state>& s, const auto&) {
+        return myriad::vec<R, n_observed>{s[x] * s[x]};
+    }
+};
+MYRIAD_INSTANTIATE(summarised, myriad::euler_maruyama)
+#endif
+#if defined(CASE_diffusion_with_tangents)
+using with_tangents = myriad::with_tangents<walk, 1>;
+MYRIAD_INSTANTIATE(with_tangents, myriad::euler_maruyama)
+#endif
+#if defined(CASE_diffusion_with_sensitivities)
+using with_sensitivities = myriad::with_sensitivities<walk, walk::k>;
+MYRIAD_INSTANTIATE(with_sensitivities, myriad::euler_maruyama)
+#endif
+#if defined(CASE_diffusion_with_a_mass_matrix)
+struct massive : walk {
+    static constexpr myriad::mass_entry mass_matrix[] = {{x, x, 1}};
+};
+MYRIAD_INSTANTIATE(massive, myriad::euler_maruyama)
+#endif
+#if defined(CASE_diffusion_of_coupled_units)
+struct unit {
+    enum unit_state { x, n_unit_state };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_unit_state> rhs(int, auto, const auto& s, const auto&) {
+        return myriad::vec<R, n_unit_state>{-s[x]};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_unit_state> diffusion(int, auto, const auto& s, const auto&) {
+        return myriad::vec<R, n_unit_state>{s[x]};
+    }
+};
+using units = myriad::coupled_units<unit, 4>;
+MYRIAD_INSTANTIATE(units, myriad::euler_maruyama)
+#endif
