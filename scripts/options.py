@@ -36,7 +36,7 @@ class Field:
     def __init__(self, row, option_names):
         self.row, self.core_name = row, row["name"]
         self.name = option_names.names.get(self.core_name, self.core_name).rpartition(".")[2]
-        self.only_solve = row["of_call_alone"]
+        self.only_solve = row["of_call_alone"] or self.name in option_names.arguments_of_study
         yes = option_names.true_choices.get(self.core_name)
         if yes:
             self.hint, self.default = "bool", repr(row["initial"] == yes)

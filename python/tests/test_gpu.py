@@ -16,7 +16,7 @@ import example_models
 import myriad_ode as my
 from myriad_ode import _core
 from myriad_ode.kernels import nvrtc
-from myriad_ode.models.methods import fixed_step, methods
+from myriad_ode.models.methods import fixed_step, methods, stochastic
 
 pytestmark = pytest.mark.skipif(os.environ.get("MYRIAD_TEST_DEVICE") != "cuda" or bool(_core.no_gpu()),
                                 reason="MYRIAD_TEST_DEVICE is not cuda, or there is no GPU")
@@ -78,7 +78,7 @@ def test_a_gpu_has_the_numbers_of_a_cpu(name):
 
 
 @pytest.mark.parametrize("precision", ["double", "float"])
-@pytest.mark.parametrize("method", methods)
+@pytest.mark.parametrize("method", [m for m in methods if m not in stochastic])
 def test_every_method_solves_the_oscillator(method, precision):
     x, v, w = *my.states("x v"), my.parameter("w")
     model = my.model({x: v, v: -w * w * x})

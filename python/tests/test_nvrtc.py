@@ -18,7 +18,7 @@ import test_cpp
 from myriad_ode import _core
 from myriad_ode.kernels import compiled_files, nvrtc
 from myriad_ode.gradients.adjoint import Adjoint
-from myriad_ode.models.methods import method_type, methods
+from myriad_ode.models.methods import method_type, methods, stochastic
 from myriad_ode.models.sensitivities import with_sensitivities
 
 pytestmark = [pytest.mark.long, pytest.mark.skipif(nvrtc.find() is None, reason="there is no NVRTC")]
@@ -78,6 +78,18 @@ def pulsed():
                     accessories={area: my.integral(my.where(on < width, x, 0.0))})
 
 
+def bistable():
+    """A particle that noise drives over a barrier."""
+    x, sigma = my.state("x"), my.parameter("sigma")
+    return my.model({x: x - x**3}, noise={x: sigma * my.sqrt(1 + x * x)}, after_step={my.end_phase: x > 1})
+
+
+def sharing():
+    """Two states that share processes."""
+    (x, v), (W, V) = my.states("x v"), my.wiener("W V")
+    return my.model({x: -x, v: x - v}, noise={x: {W: 0.1 * x, V: 0.2}, v: {W: my.cos(my.time)}})
+
+
 # What is compiled for each method: models with every kind of hook and event, outputs along the solution, tables.
 cases = [
     (example_models.duffing, "cash_karp", (), False, "double"),
@@ -95,10 +107,13 @@ cases = [
     (dosed, "tsitouras_5", (), False, "double"),
     (pulsed, "tsitouras_5", (), False, "float"),
     (example_models.continuation, "rodas_5p", ("pid_control", "mixed_scale"), True, "double"),
+    (bistable, "milstein", (), False, "double"),
+    (sharing, "stochastic_heun", (), True, "float"),
 ]
 models = (*example_models.headers, test_cpp.every_operation, epidemic)
 every_model = [(model, "cash_karp", (), False, real) for model in models for real in ("double", "float")]
-every_method = [(model, method, (), True, "double") for model in models for method in methods]
+every_method = [(model, method, (), True, "double") for model in models for method in methods
+                if method not in stochastic]
 architectures = (75, 80, 90, 100, 103)
 
 

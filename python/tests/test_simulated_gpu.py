@@ -103,6 +103,23 @@ for size, more in ((3, {}), (100, dict(schedule="dynamic")), (1000, dict(phases=
 """)
 
 
+def test_paths_of_noise_are_the_cpus_also_in_chunks_of_a_study(run):
+    run("""
+W, w, sigma = my.wiener("W"), my.state("w"), my.parameter("sigma")
+shared = my.model({x: -x, w: 0}, noise={x: {W: sigma * my.sqrt(1 + x * x)}, w: {W: 1}})
+own = my.model({x: -x, w: 0}, noise={x: sigma * x, w: 1})
+call = dict(start={x: 1, w: 0}, time=(0, 1), step=1 / 64, noise_step=1 / 16, seed=7)
+for one, method, more in ((shared, "stochastic_heun", {}), (own, "milstein", dict(precision="float"))):
+    of_call = dict(paths=50, method=method, **call, **more)
+    cpu, gpu = (my.solve(one, {sigma: [0.3, 0.5]}, device=device, **of_call) for device in ("cpu", "cuda"))
+    assert len(np.unique(gpu["w"])) == 100
+    for name in ("x", "w"):
+        assert np.allclose(cpu[name], gpu[name], atol=1e-5 if more else 1e-12), (name, method)
+    study = my.study(one, {sigma: [0.3, 0.5]}, keep=[x, w], **of_call).run(device="cuda", chunk=37)
+    assert np.array_equal(study["x_end"].ravel(), gpu["x"]) and np.array_equal(study["w_end"].ravel(), gpu["w"])
+""")
+
+
 def test_a_gpu_has_the_notes_and_checks_of_a_cpu(run):
     run("""
 y, rate, s = my.state("y"), my.parameter("rate"), my.states(" ".join(f"s_{i}" for i in range(12)))

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import copy
 import itertools
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
@@ -252,14 +253,15 @@ class Body:
 
 
 def wrap(line: str, indent: int) -> list[str]:
-    """A statement in lines of at most 120 columns, broken after commas and operators."""
+    """A statement in lines of at most 120 columns, broken after commas and operators, but not within a type."""
     indent += len(line) - len(line := line.lstrip())
     first, rest = " " * indent, " " * (indent + 4)
     if len(first) + len(line) <= columns:
         return [first + line]
     words: list[str] = []
     for word in line.split(" "):
-        if words and word in ("+", "-", "*", "/", "%", "&&", "||", "<", "<=", ">", ">=", "==", "!=", "="):
+        if words and (word in ("+", "-", "*", "/", "%", "&&", "||", "<", "<=", ">", ">=", "==", "!=", "=") or
+                      re.search(r"\bconst$|\bvec<[^>]*$", words[-1])):
             words[-1] += " " + word
         else:
             words.append(word)

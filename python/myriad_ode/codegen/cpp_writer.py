@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 from .._core import factor_entries
 from ..models.mass_matrix import left_sides, mass_entries
-from ..symbolic.node import integer, real, text, walk
+from ..models.noise import equation_texts
+from ..symbolic.node import integer, real, walk
 from ..symbolic.operations import cost
 from ..symbolic.whole_and_real import generic_problem
 from .cpp_body import Body, Names, branches, columns, returned, update, wrap
@@ -67,6 +68,9 @@ class Writer:
             mass = f"static constexpr myriad::mass_entry mass_matrix[] = {{{mass_entries(model)}}};"
             out += ["    " + line for line in wrap(mass, 0)]
         blocks = [self.function("rhs", "n_state", model.rhs)] + jacobian
+        if model.noise is not None:
+            blocks.append(self.function("diffusion", "n_state", model.noise.factors,
+                                        row="n_noise" if model.noise.processes else ""))
         if model.events:
             blocks.append(self.function("events", "n_event", [e.function for e in model.events]))
         if model.observed:
@@ -85,13 +89,14 @@ class Writer:
         return "\n".join(out + ["};", ""])
 
     def description(self) -> list[str]:
-        lines = [f"{side} = {text(e)}" for side, e in zip(left_sides(self.model), self.model.rhs)]
+        lines = equation_texts(self.model, left_sides(self.model), self.model.rhs)
         return lines if len(lines) <= 8 else lines[:7] + [f"... and {len(lines) - 7} more equations"]
 
     def declarations(self) -> list[str]:
         model = self.model
         declared = [name for name in ("accessories_are_outputs", "writes_parameters", "writes_time_domain")
                     if getattr(model, name)]
+        declared += ["additive_noise"] * (model.noise is not None and model.noise.is_additive)
         # From which the library sees whether a kernel is to have one copy of rhs; in C++ it has to count.
         weight = [f"static constexpr int rhs_weight = {cost(model.rhs)};"]
         return [f"static constexpr bool {name} = true;" for name in declared] + weight
@@ -130,26 +135,32 @@ class Writer:
         prefix = {"state": names.y, "parameter": names.p}.get(kind, f"{names.p}.{kind}")
         return f"{prefix}[{name}]"
 
-    def function(self, name: str, count: int | str, roots: Sequence[Node], further: Sequence[str] = ()) -> list[str]:
-        """A function of time, state and parameters, and of `further` arguments."""
+    def function(self, name: str, count: int | str, roots: Sequence[Node], further: Sequence[str] = (),
+                 row: str = "") -> list[str]:
+        """A function of time, state and parameters, and of `further` arguments. With `row` it returns a matrix whose
+        rows have that length, and whose entries are given row after row."""
         n = self.names
         body = Body(roots, n, self.in_function, scalar=False)
         values = []
         for root in roots:
             value = body.text(root)
             values.append(value if _depends_on_instance(root) or value.startswith(n.R + "(") else f"{n.R}({value})")
+        kind = n.R
+        if row:
+            kind, length = f"myriad::vec<{n.R}, {row}>", len(values) // len(self.model.states)
+            values = [f"{kind}{{{', '.join(values[i:i + length])}}}" for i in range(0, len(values), length)]
         used = [node for node in walk(roots) if node.op in ("symbol", "element", "dot", "lookup", "find_interval")]
         kinds = {node.value[0] if node.op == "symbol" else "shared" for node in used}
         arguments = [f"auto {n.t}" if "built-in" in kinds else "auto",
                      f"const myriad::vec<{n.R}, n_state>&" + (f" {n.y}" if "state" in kinds else ""),
                      "const auto&" + (f" {n.p}" if kinds - {"built-in", "state"} else ""), *further]
         lines = [f"template <class {n.R}>"]
-        lines += wrap(f"MYRIAD_FUNCTION static myriad::vec<{n.R}, {count}> {name}({', '.join(arguments)}) {{", 0)
+        lines += wrap(f"MYRIAD_FUNCTION static myriad::vec<{kind}, {count}> {name}({', '.join(arguments)}) {{", 0)
         for statement in body.lines:
             lines += wrap(statement, 4)
         result = ", ".join(values)
         if len(values) == 1:
-            lines += wrap(f"return myriad::vec<{n.R}, {count}>{{{result}}};", 4)
+            lines += wrap(f"return myriad::vec<{kind}, {count}>{{{result}}};", 4)
         elif len(result) + 18 <= columns:
             lines.append(f"    return {{{result}}};")
         else:

@@ -23,6 +23,7 @@ from ..models import state_jumps
 from ..models.components import Components
 from ..models.event import Event, Stop
 from ..models.methods import default
+from ..models.noise import refuse_derivatives
 from ..models.triggers_as_events import with_events
 from ..solving.gather import ends_of
 from ..sweeps.inputs import numbers, real
@@ -171,6 +172,7 @@ def _checked(model: AnyModel, by: Sequence[str]) -> Model:
     """The model. Refuses one that has no adjoint."""
     if not isinstance(model, Model):
         raise no_adjoint("the model is not traced from Python, but written in C++ or made of another")
+    refuse_derivatives(model, "derivatives")
     if model.mass_matrix is not None:
         raise no_adjoint("the model has a mass matrix")
     if model.triggers or model.queue is not None:

@@ -13,6 +13,7 @@ from ..base.statuses import status_names
 from ..gradients.adjoint import Adjoint
 from ..gradients.forward import forward_of, refuse_chosen, tolerances
 from ..models.components import Components, by_component, unknown
+from ..models.noise import refuse_derivatives
 from ..sweeps.inputs import by_name, real
 from ..symbolic.symbols import time
 from .objective import Curve, Free, Objective
@@ -36,6 +37,7 @@ class LeastSquares(Objective):
     def __init__(self, model: AnyModel, data: Any, free: ByComponent, sweep: ByComponent | None,
                  start: ByComponent | None, begin: float, sigma: Any, options: Mapping[str, Any],
                  adjoint: bool = False) -> None:
+        refuse_derivatives(model, "fits")
         self.model = model
         self._components = components = Components(model)
         super().__init__([Free(components.component(name), bounds) for name, bounds in by_component(

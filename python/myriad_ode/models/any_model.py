@@ -40,6 +40,8 @@ class AnyModel(ComponentNames):
     generate: Sequence[tuple[Any, Any]] = ()
     triggers: Sequence[Any] = ()
     edges: Sequence[Any] = ()  # of conditions of triggers
+    noise: Any = None  # a `Noise`
+    has_noise: bool | None = False  # None where only a compiler knows
     mass_matrix: npt.NDArray[np.floating[Any]] | None = None
     writes_parameters = writes_time_domain = False  # whether a hook does
     jumps_to_miss: Sequence[str] = ()  # where equations and events jump and no step ends

@@ -34,6 +34,7 @@ class CppModel(AnyModel):
     not_interpreted = "it is written in C++"
     generated: tuple[str, ...] = ()
     generator = ""
+    has_noise = None
 
     def __init__(self, text: str, struct: str, states: Names, parameters: Names = (), shared: Names = (),
                  shared_integers: Names = (), accessories: Names = (), integer_accessories: Names = (),

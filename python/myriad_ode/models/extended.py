@@ -19,6 +19,7 @@ class Extended(AnyModel):
         names = {kind: [*known, *added.get(kind, ())] for kind, known in names_of(model).items()}
         self._set_names(names)
         self.events, self.triggers, self.edges = model.events, model.triggers, model.edges
+        self.has_noise = model.has_noise
         self.generate, self.writes_parameters = model.generate, model.writes_parameters
         every = [name for of_kind in names.values() for name in of_kind]
         twice = next((name for name in every if every.count(name) > 1), None)

@@ -13,6 +13,7 @@ from ..symbolic.latex import expressions_latex, names_latex, plain
 from ..symbolic.node import Node
 from ..symbolic.symbols import symbol as symbol_of
 from .any_model import names_of
+from .noise import is_factor, is_zero
 
 if TYPE_CHECKING:
     from ..symbolic.types import Assignments
@@ -36,7 +37,8 @@ def _lines(model: Any, mass_matrix: Any) -> list[str]:
         return ""
 
     _content(model, mass_matrix, note)  # what will be written
-    names = names_latex([name for kind in kinds.valued for name in names_of(model)[kind]], _built_in.values())
+    names = names_latex([*(name for kind in kinds.valued for name in names_of(model)[kind]),
+                         *(model.noise.names if model.noise is not None else ())], _built_in.values())
 
     def symbol(node: Node) -> str:
         kind, name = node.value
@@ -72,11 +74,34 @@ def _content(model: Any, mass_matrix: Any, write: _Write) -> list[str]:
 
 
 def _equations(model: Any, mass_matrix: Any, write: _Write) -> Iterable[str]:
+    if model.noise is not None:
+        yield from _stochastic_equations(model, write)
+        return
     states = list(model.equations)
     slopes = [rf"\frac{{\mathrm{{d}} {write(state)}}}{{\mathrm{{d}} t}}" for state in states]
     for number, right in enumerate(model.equations.values()):
         left = slopes[number] if mass_matrix is None else _combined(mass_matrix[number], slopes)
         yield f"{left} &= {write(right)}"
+
+
+def _stochastic_equations(model: Any, write: _Write) -> Iterable[str]:
+    """The equations of differentials. The process of a state of its own is a letter with the state as subscript."""
+    letter = _free_letter(model, "WBZ")
+    for number, (state, drift) in enumerate(model.equations.items()):
+        name = write(state)
+        terms = [] if is_zero(drift) else [_term(drift, "t", write)]
+        for factor, process in model.noise.terms(number):
+            terms.append(_term(factor, rf"{letter}_{{{name}}}" if process is None else write(process), write))
+        yield rf"\mathrm{{d}} {name} &= {' + '.join(terms) or 0}"
+
+
+def _term(factor: Node, by: str, write: _Write) -> str:
+    """A factor times a differential."""
+    differential = rf"\mathrm{{d}} {by}"
+    if factor.op == "constant" and factor.value == 1:
+        return differential
+    text = write(factor)
+    return rf"{text} \, {differential}" if is_factor(factor) else rf"\left({text}\right) \, {differential}"
 
 
 def _combined(factors: Sequence[float], slopes: Sequence[str]) -> str:

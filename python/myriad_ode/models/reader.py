@@ -122,6 +122,14 @@ class Reader:
             targets, rhs = [t for i in range(n) for t in targets[i::n]], [e for i in range(n) for e in rhs[i::n]]
         return targets, rhs
 
+    def expression(self, given: Any, what: str) -> Expression:
+        """A real expression from what a user gave."""
+        return to_real(self._real(self.value(given, what), what))
+
+    def items(self, given: ByComponent | None, what: str) -> Iterable[tuple[Any, Any]]:
+        """What is given by component."""
+        return self._items(given, what, self.line)
+
     def _real(self, value: object, what: str) -> Expression:
         try:
             return as_number(value)

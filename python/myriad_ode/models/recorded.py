@@ -21,6 +21,7 @@ from .any_model import AnyModel, names_of
 from .event import Event, Stop, stop
 from .latex import model_html, model_latex
 from .mass_matrix import left_sides, read_mass_matrix
+from .noise import equation_texts, read_noise, refuse_parts, refuse_symbols
 from .reader import Reader
 from .time_jumps import TimeSwitches
 from .trigger import Edge, Queue, Trigger, edges_of, needs_queue
@@ -48,7 +49,7 @@ class RecordedModel(AnyModel):
                  shared: Names, name: str | None, stops: Stop | Sequence[Stop] = (),
                  mass_matrix: npt.ArrayLike | ByComponent | None = None,
                  triggers: Trigger | Sequence[Trigger] = (), tie_seed: int | None = None,
-                 exact_float: bool = False) -> None:
+                 exact_float: bool = False, noise: ByComponent | None = None) -> None:
         self.line = users_line()
         self.exact_float = exact_float
         self.hidden: frozenset[str] = frozenset()  # accessories that no user has named
@@ -70,6 +71,8 @@ class RecordedModel(AnyModel):
         self.edges: list[Edge] = list(edges_of(self.triggers, self.queue))
         if self.queue is not None:
             self.hidden = frozenset(self.queue.accessories + self.queue.integers)
+        self.noise = read_noise(reader, noise, targets)
+        self.has_noise = self.noise is not None
         start, self.summaries, self.observed, self._accessory_targets = reader.accessories(accessories)
         self.initialise: Assignments = start + reader.assignments(initialise, "initialise", {t for t, _ in start})
         self.after_step = reader.assignments(after_step, "after_step")
@@ -81,6 +84,8 @@ class RecordedModel(AnyModel):
         #: M of M y' = f by rows and columns; None for the identity
         self.mass_matrix = None if mass_matrix is None else read_mass_matrix(
             mass_matrix, self.states, lambda key: reader.target(key, "mass_matrix").value[1], self.line)
+        if self.noise is not None:
+            refuse_parts(self)
         self.name = self._default_name(equations) if name is None else sym.check_name(name, "a model")
         self._check()
 
@@ -100,6 +105,7 @@ class RecordedModel(AnyModel):
         """Lets steps end at all jumps in time that are known beforehand, by a further stop and two accessories."""
         changing = {target for target, _ in (*self.after_step, *self.finalise)}
         changing |= {sym.symbol("accessory", one.accessory) for one in self.summaries}
+        changing |= set(self.noise.noisy_states if self.noise else ())
         if has_mass_matrix:  # the slopes are others than the equations say
             changing |= set(self.equations)
 
@@ -119,8 +125,9 @@ class RecordedModel(AnyModel):
             taken.append(sym.free_name(wanted, names))
             return taken[-1]
 
-        switches = self.switches = TimeSwitches(self.equations, [quantity for _, quantity in given.observed],
-                                                [e.function for e in given.events], self._changing, free, moves)
+        quantities = [*(quantity for _, quantity in given.observed), *(given.noise.factors if given.noise else ())]
+        switches = self.switches = TimeSwitches(self.equations, quantities, [e.function for e in given.events],
+                                                self._changing, free, moves)
         self.jumps_to_miss = switches.unknown
         if not switches.switches:
             return
@@ -130,6 +137,8 @@ class RecordedModel(AnyModel):
             return
         self.rhs = list(switches.equations.values())
         self.observed = [(short, quantity) for (short, _), quantity in zip(given.observed, switches.quantities)]
+        if given.noise is not None:
+            self.noise = given.noise.with_factors(switches.quantities[len(given.observed):])
         self.initialise = switches.continued(given.initialise, begins=True)
         for one in (*self.events, *self.stops, *self.triggers):
             if not switches.needed.isdisjoint(target for target, _ in one.do):
@@ -180,6 +189,7 @@ class RecordedModel(AnyModel):
         times = [value for one in self.stops for value in one.values]
         waits = [e for t in self.triggers for e in (t.delay, t.priority, *t.values) if e is not None]
         self._functions = self.rhs + [e.function for e in self.events] + [q for _, q in self.observed]
+        self._functions += self.noise.factors if self.noise is not None else []
         self._in_functions = symbols_of(self._functions)
         found = targets + self._in_functions + symbols_of(times) + self._accessory_targets
         for _, assignments in hooks:
@@ -196,6 +206,7 @@ class RecordedModel(AnyModel):
                 components[kind] = together(components[kind], self.units_of_states.count)
             for kind in kinds.accessories:
                 components[kind] = unit_by_unit(components[kind], self.units_of_states.count)
+        refuse_symbols(found, self.line)
         missing = [n for n in components["state"] if n not in self.states]
         if missing:
             symbol = next(s for s in found + declared if s.value == ("state", missing[0]))
@@ -229,6 +240,7 @@ class RecordedModel(AnyModel):
         """(kind, names) of everything that has an enumeration in C++."""
         shared = self.scalar_shared + [name for t in self.tables for name in (t.name, f"{t.name}_last")]
         return [*{**names_of(self), "shared": shared}.items(), ("observed", [n for n, _ in self.observed]),
+                ("noise", [] if self.noise is None else self.noise.names),
                 ("stop", self.stop_names),
                 ("trigger", [e.name for e in self.edges])]
 
@@ -275,7 +287,8 @@ class RecordedModel(AnyModel):
                                     f"{', '.join(e.name for e in self.events) or 'none'}")
         for what, members, present in (
                 ("stops", "stop stop_time", len(self.stop_names) - len(self.switches.switches)),
-                ("triggers", "trigger condition after_trigger initial_value persistent queue", self.triggers)):
+                ("triggers", "trigger condition after_trigger initial_value persistent queue", self.triggers),
+                ("noise", "noise n_noise diffusion additive_noise", self.noise)):
             taken = next((n for n in members.split() if n in kind_of), None)
             if taken is not None and present:
                 raise Error(f"'{taken}' names {sym.a(kind_of[taken])}{at(self.line)}, and has a meaning of its own in "
@@ -304,5 +317,5 @@ class RecordedModel(AnyModel):
         return np.array(np.broadcast_arrays(*evaluate(list(self.equations.values()), known), *y, t)[:len(y)])
 
     def __repr__(self) -> str:
-        equations = [f"{side} = {text(e)}" for side, e in zip(left_sides(self)[:4], self.equations.values())]
+        equations = equation_texts(self, left_sides(self)[:4], list(self.equations.values())[:4])
         return f"<myriad model {self.name}: {'; '.join(equations)}{'; ...' if len(self.states) > 4 else ''}>"

@@ -12,6 +12,7 @@ from ..symbolic.symbols import t_begin, t_end
 from . import state_jumps
 from .components import Components, listed, unknown
 from .extended import Extended
+from .noise import refuse_derivatives
 from .recorded import RecordedModel
 
 if TYPE_CHECKING:
@@ -58,6 +59,7 @@ class WithSensitivities(Extended):
         if isinstance(model, Extended):
             raise Error(f"the model has {'sensitivities' if isinstance(model, WithSensitivities) else 'tangents'} "
                         f"already{line}: give the model alone")
+        refuse_derivatives(model, "derivatives")
         if model.mass_matrix is not None:
             raise Error(f"the model has a mass matrix{line}, with which initial values of algebraic states would not "
                         "be independent: solve its algebraic equations in the others")

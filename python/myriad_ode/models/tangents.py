@@ -10,6 +10,7 @@ import numpy as np
 from ..base.errors import Error, at, users_line
 from ..symbolic.numbers import is_whole
 from .extended import Extended
+from .noise import refuse_derivatives
 from .recorded import RecordedModel
 from .triggers_as_events import with_events
 
@@ -41,6 +42,7 @@ class WithTangents(Extended):
         if not is_whole(transient_phases, 0, (1 << 31) - 1):
             raise Error(f"transient_phases is {transient_phases!r}{at(users_line())}: give the number of phases that "
                         "do not count, 0 or more")
+        refuse_derivatives(model, "tangents")
         if model.mass_matrix is not None:
             raise Error(f"the model has a mass matrix{at(users_line())}, with which tangents of algebraic states would "
                         "not be independent: solve its algebraic equations in the others")

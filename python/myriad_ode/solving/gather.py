@@ -15,7 +15,7 @@ from ..models.components import Components, by_component, short_name, unknown
 from ..models.sensitivities import ends_of_domain
 from ..sweeps.gpu_inputs import DeviceInput
 from ..sweeps.inputs import Along, by_name, numbers, whole, whole_numbers
-from ..sweeps.sweep import Sweep
+from ..sweeps.sweep import Sweep, refuse_others
 from ..symbolic.axes import Axis, drawn
 from ..symbolic.node import Node
 
@@ -29,9 +29,7 @@ def _named(sweep: Sweep | ByComponent | None, start: ByComponent | None, in_swee
            in_start: Callable[[Component], str]) -> dict[str, Any]:
     """The values of a sweep, an object like `my.grid(...)` or a dict, and of start=, by what these functions call the
     components. Refuses a component that is given twice."""
-    if sweep is not None and not isinstance(sweep, Sweep) and not hasattr(sweep, "items"):
-        raise Error(f"the sweep is a {type(sweep).__name__}: give a dict, as in {{k: np.linspace(0, 1, 100)}}, or "
-                    "my.grid(k=..., B=...)")
+    refuse_others(sweep)
     if isinstance(sweep, Sweep):
         sweep = {**{name: Along(sweep, name) for name in sweep.coordinates}, **sweep.constants}
     given = by_component({} if sweep is None else sweep, "the sweep", in_sweep)

@@ -77,6 +77,7 @@ class StudyArguments(TypedDict, total=False):
     carry_on: bool
     phase_length: float
     carry_on_step: bool
+    noise_step: float
     events: Mapping[Component, EventChoice] | None
     sub_samples: int
     accumulation_limit: int
@@ -90,6 +91,7 @@ class SolveArguments(StudyArguments, total=False):
     """Options of `solve`, by keyword."""
 
     time_limit: float
+    seed: int
     invalid: Literal["refuse", "mark"]
 
 
@@ -114,6 +116,9 @@ class Options:
     phase_length: time continues from phase to phase, and phases end at t_begin + length, + 2 length, ...; 0: phases go
         to t_end (in [0, inf), in the model's unit of time)
     carry_on_step: a phase starts with `step`, or with the last step size (`carry_on`)
+    seed: seed of the paths of a stochastic equation (in [0, 4294967295])
+    noise_step: cells of these paths: steps that are a multiple of one, or a number of 65536ths of one, follow the same
+        path; 0: the step (in [0, inf), in the model's unit of time)
     events: how events are detected: one entry for each; none: defaults for all
     sub_samples: points per step at which event functions are evaluated, and with two or more also where they turn: what
         crosses zero and comes back within a step is found (in [1, 10000])
@@ -141,6 +146,8 @@ class Options:
     carry_on: bool = False
     phase_length: float = 0
     carry_on_step: bool = False
+    seed: int = 0
+    noise_step: float = 0
     events: Mapping[Component, EventChoice] | None = None
     sub_samples: int = 1
     accumulation_limit: int = 50

@@ -17,7 +17,8 @@ from ..kernels.devices import device_names
 from ..models import time_jumps
 from ..models.any_model import AnyModel
 from ..models.components import Components
-from ..models.methods import default, fixed_step, method_type
+from ..models.methods import fixed_step, method_type
+from ..models.noise import count_of_paths, method_for
 from ..models.once_per_phase import prepared
 from ..models.sensitivities import WithSensitivities, note_on, with_sensitivities
 from ..results.no_instances import EmptyEnsemble, EmptyReport, kernel as no_kernel
@@ -26,7 +27,7 @@ from ..results.run import Run
 from ..results.sensitivities import note
 from ..sweeps.gpu_inputs import DeviceInput
 from ..sweeps.inputs import numbers
-from ..sweeps.sweep import Sweep
+from ..sweeps.sweep import Sweep, with_paths
 from .core_options import finish_options, longest_step, make_options, options_of, takes_options
 from .gather import fill, gather, given_values
 from .options import Options, SolveArguments
@@ -55,7 +56,7 @@ class _Call:
         if not isinstance(model, AnyModel):
             raise Error(f"the model is a {type(model).__name__}: make it by my.model(...), as in "
                         "my.solve(my.model({x: v, v: -x}), ...)")
-        self.method, self.control, self.precision = default if method is None else method, control, precision
+        self.method, self.control, self.precision = method_for(model, method, precision), control, precision
         self.real = np.dtype("f8" if precision == "double" else "f4")
         if isinstance(model, WithSensitivities) and free is None and not sensitivity_control:
             model = with_sensitivities(model.model, model.free, control=False)
@@ -161,9 +162,10 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
           time: tuple[Values, Values] | None = None, method: Method | None = None,
           control: Control | Sequence[Control] = (),
           options: Options | None = None, tolerance_scale: Values | None = None, size: int | None = None,
-          precision: Precision = "double", device: str | Sequence[str] = "auto", interpreted: bool | None = None,
-          make_consistent: bool = False, progress: Progress = None, free: SomeComponents | None = None,
-          sensitivity_control: bool = True, **others: Unpack[SolveArguments]) -> Run:
+          paths: int | None = None, precision: Precision = "double", device: str | Sequence[str] = "auto",
+          interpreted: bool | None = None, make_consistent: bool = False, progress: Progress = None,
+          free: SomeComponents | None = None, sensitivity_control: bool = True,
+          **others: Unpack[SolveArguments]) -> Run:
     """Integrates a model for all instances of a sweep, and returns a `Run`.
 
     model             from `my.model(...)`
@@ -177,11 +179,14 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
                       `dict(from_phase=, states=, accessories=, time=)`; `run["t"]` are the recorded times
     samples           dense output: a number of evenly spaced times, an array of times, or `dict(states=, evenly= |
                       times= | every=, capacity=, minimum_spacing=, from_phase=)`
-    method, control   as in the C++ library: one of `my.methods`, by default "tsitouras_5"; control is one or
-                      several of `my.controls`, of which "tolerance_per_instance" is with `tolerance_scale=`
+    method, control   as in the C++ library: one of `my.methods`, by default "tsitouras_5", and for a model
+                      with noise "euler_maruyama"; control is one or several of `my.controls`, of which
+                      "tolerance_per_instance" is with `tolerance_scale=`
     rtol, atol        tolerances of the error per step: numbers, lists in the order of the states, or dicts by state
     events            changes of `direction`, `tolerance` or `stop_after` of events by name
     size              number of instances, if no array gives it
+    paths             so many paths of each instance of the sweep, for a model with noise: a last axis of the sweep, so
+                      that path j of instance i is the instance i * paths + j
     precision         "double" or "float"
     device            "cpu", "cpu:4" (threads), "cuda", "cuda:1" (the second GPU), or "auto", the first GPU if there is
                       one, and NVRTC to compile for it, and the CPU otherwise; or a list of GPUs, which divide the
@@ -207,6 +212,8 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
     given = options_of(options, others, solve)
     devices, no_gpu = _devices(device, interpreted)
     call = _Call(model, method, control, precision, free, sensitivity_control)
+    if paths is not None:
+        sweep = with_paths(sweep, count_of_paths(call.model, paths))
     call.gather(sweep, start, time, size, given)
     if call.count == 0:
         call.integrate_none()

@@ -4,6 +4,7 @@ a stop, and handed to any executor. The C++ library's `study` with a model of Py
 
 from __future__ import annotations
 
+import dataclasses
 import hashlib
 import os
 import pickle
@@ -23,7 +24,8 @@ from ..kernels.devices import device_names
 from ..models import time_jumps
 from ..models.any_model import AnyModel
 from ..models.components import Components, listed, short_name
-from ..models.methods import default, fixed_step, method_type
+from ..models.methods import fixed_step, method_type, stochastic
+from ..models.noise import count_of_paths, method_for
 from ..models.once_per_phase import prepared
 from ..models.sensitivities import note_on
 from ..models.whole_numbers import check_whole_numbers
@@ -66,7 +68,8 @@ class Study:
 
     def _build(self, model: AnyModel, sweep: Sweep | ByComponent | None, *, start: ByComponent | None,
                time: tuple[Any, Any] | None, keep: SomeComponents | Mapping[str, Any] | None,
-               reduce: Reduction | Sequence[Reduction], draws: int | None, seed: int, title: str,
+               reduce: Reduction | Sequence[Reduction], draws: int | None, paths: int | None, seed: int | None,
+               title: str,
                units: Mapping[Any, str] | None, notes: Mapping[str, object] | None, method: Method | None,
                control: Control | Sequence[Control], options: Options, precision: Precision,
                interpreted: bool | None) -> None:
@@ -74,11 +77,13 @@ class Study:
             raise Error(f"the model is a {type(model).__name__}: make it by my.model(...)")
         if precision not in ("double", "float"):
             raise Error(f"precision is {precision!r}: give \"double\" or \"float\"")
-        chosen = default if method is None else method
+        chosen = method_for(model, method, precision)
         if chosen in fixed_step and options.step is None:
             raise Error(f"{chosen} takes fixed steps: give step=")
         model = prepared(model)
         components = self._components = Components(model)
+        seed = whole(options.seed if seed is None else seed, "seed", (1 << 63) - 1)
+        options = dataclasses.replace(options, seed=seed if chosen in stochastic else 0)
         samples = options.samples
         times: Any = samples.get("times", ()) if isinstance(samples, Mapping) else samples
         if np.ndim(times) > 1:
@@ -99,11 +104,13 @@ class Study:
                 model.name or "model",
                 method_type(chosen, control, samples is not None).replace("myriad::", ""))
             made.options(core_options)
-            self._set_instances(made, components, sweep, start, time, draws)
+            self._set_instances(made, components, sweep, start, time, draws is not None or paths is not None)
             self._looks_at_domains = bool(samples is not None or options.phase_length or options.carry_on)
             if draws is not None:
                 made.repeat(whole(draws, "draws", 1 << 62), "draw")
-            made.seed(whole(seed, "seed", (1 << 63) - 1) & ((1 << 64) - 1))
+            if paths is not None:
+                made.repeat(count_of_paths(model, paths), "path")
+            made.seed(seed & ((1 << 64) - 1))
             check_whole_numbers(model.generate, made.size, self._shared_integers)
             self._set_kept(made, components, keep, bool(recorded or sampled or reduce or core_options.record.time))
             for reduction in reduce if isinstance(reduce, (list, tuple)) else [reduce] if reduce else []:
@@ -130,7 +137,7 @@ class Study:
             made.note(f"user.{key}", text(value, f"the note '{key}'"))
 
     def _set_instances(self, made: _core.Study, components: Components, sweep: Sweep | ByComponent | None,
-                       start: ByComponent | None, time: tuple[Any, Any] | None, draws: int | None) -> None:
+                       start: ByComponent | None, time: tuple[Any, Any] | None, repeated: bool) -> None:
         """Axes, random values and values for all instances."""
         axes, constants = gather_axes(components, sweep, start, time)
         varying = [*(name for axis in axes for name in axis),
@@ -140,7 +147,7 @@ class Study:
             if name in given:
                 raise Error(f"'{name}' is given to the study, and generate= of the model sets it: give it once")
         refuse_missing(components, {*components.defaults, *components.generated, *given})
-        if components.generated and not axes and draws is None:
+        if components.generated and not axes and not repeated:
             raise Error("the model generates its instances, and nothing says how many: give draws=")
         self._own_domains = not {"t_begin", "t_end"}.isdisjoint(varying)
         for name, value in self._defaults(components, constants, varying).items():
@@ -314,9 +321,9 @@ class Study:
 @takes_options(StudyArguments)
 def study(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: ByComponent | None = None,
           time: tuple[Any, Any] | None = None, keep: SomeComponents | Mapping[str, Any] | None = None,
-          reduce: Reduction | Sequence[Reduction] = (), draws: int | None = None, seed: int = 0, title: str = "",
-          units: Mapping[Any, str] | None = None, notes: Mapping[str, object] | None = None,
-          method: Method | None = None,
+          reduce: Reduction | Sequence[Reduction] = (), draws: int | None = None, paths: int | None = None,
+          seed: int | None = None, title: str = "", units: Mapping[Any, str] | None = None,
+          notes: Mapping[str, object] | None = None, method: Method | None = None,
           control: Control | Sequence[Control] = (), options: Options | None = None, precision: Precision = "double",
           interpreted: bool | None = None, **others: Unpack[StudyArguments]) -> Study:
     """A parameter study of a model: a `Study`, which `.run(...)` computes, in memory that does not grow with its size.
@@ -335,8 +342,11 @@ def study(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
               if nothing is recorded, sampled or reduced
     reduce    reductions over all instances: `my.reduce.mean("x_end")` and others
     draws     instances for each point of the other axes, as for random values
+    paths     so many paths of each of these instances, for a model with noise, along a last axis "path". Each is an
+              instance, with random values of its own
     seed      of random values: those along axes depend on it, the component and the instance's number alone, and those
-              that `generate=` of the model draws on it, the draw and the instance's number
+              that `generate=` of the model draws on it, the draw and the instance's number; and of the paths of a model
+              with noise. By default that of `options`
     units     {component: unit} for results; notes: {key: text}, anything that tells this study from others, such as the
               version of data: a store that was made with other notes is refused
 
@@ -346,6 +356,7 @@ def study(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
 
     The options:"""
     return Study(model, sweep, dict(
-        start=start, time=time, keep=keep, reduce=reduce, draws=draws, seed=seed, title=title, units=units, notes=notes,
+        start=start, time=time, keep=keep, reduce=reduce, draws=draws, paths=paths, seed=seed,
+        title=title, units=units, notes=notes,
         method=method, control=control, options=options_of(options, others, study), precision=precision,
         interpreted=interpreted))

@@ -124,6 +124,22 @@ def _collect(mapping: Mapping[Any, Any] | None, named: Mapping[str, Any],
     return given
 
 
+def refuse_others(sweep: Any) -> None:
+    """Refuses what is no sweep."""
+    if sweep is not None and not isinstance(sweep, Sweep) and not hasattr(sweep, "items"):
+        raise Error(f"the sweep is a {type(sweep).__name__}: give a dict, as in {{k: np.linspace(0, 1, 100)}}, or "
+                    "my.grid(k=..., B=...)")
+
+
+def with_paths(sweep: Any, count: int) -> Sweep:
+    """A sweep with a last axis of so many paths of each instance."""
+    refuse_others(sweep)
+    made = sweep if isinstance(sweep, Sweep) else zip(sweep)
+    if "path" in [*made.names, *(name for name, _ in made.axes)]:
+        raise Error("'path' is in the sweep, and the axis of paths= has that name: rename the component")
+    return Sweep([*made.axes, ("path", np.arange(count))], made.coordinates, made.constants)
+
+
 def grid(*parts: Sweep | Mapping[Any, Any], **axes: Values) -> Sweep:
     """All combinations of the values of several axes: `grid(k=np.linspace(0.2, 0.3, 100), B=[0.3, 0.4])`, or with
     symbols `grid({k: ..., B: ...})`. The last axis varies fastest. A single number is a value for all instances.

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from .types import Names
 
 __all__ = ["states", "state", "parameters", "parameter", "shared", "shared_integer", "accessory", "integer_accessory",
-           "event_count", "time", "step", "next_step", "phase", "instance", "t_begin", "t_end", "end_phase",
+           "event_count", "wiener", "time", "step", "next_step", "phase", "instance", "t_begin", "t_end", "end_phase",
            "end_instance"]
 
 
@@ -87,6 +87,7 @@ def free_name(name: str, taken: Collection[str]) -> str:
 
 def a(kind: str) -> str:
     """A kind of component for messages, as in 'a shared integer'."""
+    kind = {"noise": "Wiener process"}.get(kind, kind)
     return ("an " if kind[0] in "aei" else "a ") + kind.replace("_", " ")
 
 
@@ -155,6 +156,13 @@ def event_count(event: Named | str) -> Expression:
     """How often the event, given by its name or itself, was detected in this phase; in its action including this time.
     For hooks and actions."""
     return make("symbol", value=("event_count", check_name(getattr(event, "name", event), "an event")), type=integer)
+
+
+def wiener(name: Names) -> Any:
+    """A Wiener process, for noise that states share: a key in `noise={x: {W: factor}}` of a model; several names in a
+    string give a tuple."""
+    found = names(name)
+    return symbol("noise", found[0]) if len(found) == 1 else _several("noise", found)
 
 
 def _built_in(kind: str, type: str = real) -> Any:

@@ -1,0 +1,358 @@
+# SPDX-License-Identifier: MIT
+"""Models with noise: against solutions that are functions of the path, what a path depends on, and what is refused."""
+
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import myriad_ode as my
+from myriad_ode.models import methods
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+x, y, w = my.states("x y w")
+mu, sigma, k = my.parameters("mu sigma k")
+W, V = my.wiener("W V")
+
+
+def shared_noise():
+    """A geometric Wiener process beside its Wiener process."""
+    return my.model({x: mu * x, w: 0}, noise={x: {W: sigma * x}, w: {W: 1}})
+
+
+def diagonal():
+    """One with a process of its own, which is the first, and an Ornstein-Uhlenbeck process."""
+    return my.model({x: mu * x, y: -k * y}, noise={x: sigma * x, y: sigma})
+
+
+constants = {mu: 0.3, sigma: 0.5}
+of_diagonal = dict(start={x: 1, y: 2}, time=(0, 1), step=1 / 64, seed=5)
+
+
+def solved(model, paths, method="euler_maruyama", **more):
+    return my.solve(model, {**constants, k: 1.5} if "k" in model.parameters else constants, method=method,
+                    **{"paths": paths, "start": {x: 1, w: 0}, "time": (0, 1), "seed": 5, **more})
+
+
+def exact(path, correction=0.0):
+    """The geometric process at t = 1, of Ito's equation with the correction one."""
+    return np.exp(constants[mu] - correction * constants[sigma]**2 / 2 + constants[sigma] * path)
+
+
+def error_of(run, path, correction=0.0):
+    return np.sqrt(((run["x"] - exact(path, correction))**2).mean())
+
+
+# -- Solutions ---------------------------------------------------------------------------------------------------------
+
+def test_a_path_is_that_of_the_solution_and_the_same_for_all_steps_and_models():
+    coarse, fine = (solved(shared_noise(), 2000, step=h, noise_step=1 / 64) for h in (1 / 16, 1 / 256))
+    path = coarse["w"]
+    np.testing.assert_allclose(path, fine["w"], atol=1e-13)
+    assert abs(path.mean()) < 4 / np.sqrt(2000) and abs(path.var() - 1) < 4 * np.sqrt(2 / 2000)
+    # of strong order 1/2: a sixteenth of the step has a quarter of the error, or a fourth to a third in this sample
+    assert 3 < error_of(coarse, path, 1) / error_of(fine, path, 1) < 5.5 and error_of(fine, path, 1) < 0.03
+    heun = [error_of(solved(shared_noise(), 2000, "stochastic_heun", step=h, noise_step=1 / 64), path)
+            for h in (1 / 16, 1 / 256)]
+    assert 12 < heun[0] / heun[1] < 20 and heun[1] < 1e-3  # of order 1, for Stratonovich's equation
+    # another model's process of the same number, of the same instance, is the same
+    milstein = [error_of(solved(diagonal(), 2000, "milstein", start={x: 1, y: 2}, step=h, noise_step=1 / 64), path, 1)
+                for h in (1 / 16, 1 / 256)]
+    assert 12 < milstein[0] / milstein[1] < 20 and milstein[1] < 3e-3
+
+
+def test_an_ornstein_uhlenbeck_process_has_its_mean_and_variance():
+    n, rate = 20_000, 1.5
+    model = my.model({y: -k * y}, noise={y: sigma})
+    run = my.solve(model, {k: rate, sigma: 0.5}, start={y: 2}, time=(0, 1), paths=n, method="sra1", step=1 / 32,
+                   phases=2, record=[y], carry_on=False, seed=3)
+    variance = 0.25 * (1 - np.exp(-2 * rate)) / (2 * rate)
+    end = run["y"][:, 0]
+    assert abs(end.mean() - 2 * np.exp(-rate)) < 4 * np.sqrt(variance / n)
+    assert abs(end.var() - variance) < 4 * variance * np.sqrt(2 / n)
+    assert abs(np.corrcoef(run["y"].T)[0, 1]) < 1  # phases that begin anew have paths of their own
+
+
+def test_noise_may_depend_on_time_and_jump_with_it_where_steps_end():
+    """The variance of the integral of a factor that is one in a part of each period, which no step divides."""
+    t = my.time
+    model = my.model({w: 0}, noise={w: my.where(t % 0.5 < 0.3, 1.0, 0.0)})
+    run = my.solve(model, start={w: 0}, time=(0, 1), paths=20_000, step=0.25, seed=2)
+    assert run.accepted_steps.max() == 6  # those that end at jumps are shorter
+    assert abs(run["w"].var() - 0.6) < 4 * 0.6 * np.sqrt(2 / 20_000)
+
+
+# -- What a path depends on --------------------------------------------------------------------------------------------
+
+@pytest.fixture(scope="module")
+def whole():
+    return my.solve(diagonal(), {mu: [0.1, 0.2], sigma: 0.5, k: 1}, paths=150, **of_diagonal)
+
+
+def test_paths_are_a_last_axis_and_the_instances_numbers_their_seeds(whole):
+    assert whole.shape == (2, 150) and whole.size == 300
+    np.testing.assert_array_equal(whole["mu"].reshape(2, 150)[:, 7], [0.1, 0.2])
+    flat = my.solve(diagonal(), {mu: np.repeat([0.1, 0.2], 150), sigma: 0.5, k: 1}, **of_diagonal)
+    grid = my.solve(diagonal(), my.grid({mu: [0.1, 0.2]}, sigma=0.5, k=1.0), paths=150, **of_diagonal)
+    for other in (flat, grid):
+        np.testing.assert_array_equal(whole["x"], other["x"])
+        np.testing.assert_array_equal(whole["y"], other["y"])
+    some = my.solve(diagonal(), {mu: 0.1, sigma: 0.5, k: 1}, paths=20, **of_diagonal)
+    np.testing.assert_array_equal(some["x"], whole["x"][:20])
+    assert len(np.unique(whole["y"])) == 300
+    another = my.solve(diagonal(), {mu: 0.1, sigma: 0.5, k: 1}, paths=20, **{**of_diagonal, "seed": 6})
+    assert not np.intersect1d(another["x"], whole["x"]).size
+
+
+def test_threads_and_order_change_no_bit(whole):
+    for more in (dict(device="cpu:1"), dict(device="cpu:2", schedule="dynamic")):
+        again = my.solve(diagonal(), {mu: [0.1, 0.2], sigma: 0.5, k: 1}, paths=150, **of_diagonal, **more)
+        np.testing.assert_array_equal(whole["x"], again["x"])
+
+
+def study_of(**more):
+    return my.study(diagonal(), my.grid({mu: [0.1, 0.2]}, sigma=0.5, k=1.0), paths=150, keep=[x, y],
+                    **{**of_diagonal, **more})
+
+
+def test_a_study_has_the_paths_of_a_call_by_any_chunks(whole):
+    result = study_of().run(chunk=37, device="cpu:1")
+    assert result.axes == {"mu": 2, "path": 150}
+    np.testing.assert_array_equal(result["x_end"], whole["x"].reshape(2, 150))
+    of_options = study_of(seed=None, options=my.Options(seed=5)).run(device="cpu:1")
+    np.testing.assert_array_equal(of_options["y_end"], result["y_end"])
+    assert not (study_of(seed=6).run(device="cpu:1")["x_end"] == result["x_end"]).any()
+
+
+def test_a_store_of_another_seed_or_noise_step_is_refused(tmp_path):
+    study_of().run(tmp_path / "store", device="cpu:1")
+    for other in (dict(seed=6), dict(noise_step=1 / 32)):
+        with pytest.raises(my.Error, match="seed|noise_step"):
+            study_of(**other).run(tmp_path / "store", device="cpu:1")
+
+
+SLOW = f"""
+import sys
+sys.path.insert(0, {str(pathlib.Path(__file__).parent)!r})
+from test_noise import long_study
+begun = lambda done, total: done and print("begun", flush=True)
+long_study().run(sys.argv[1], chunk=50, device="cpu:1", progress=begun)
+"""
+
+
+def long_study():
+    return my.study(diagonal(), {mu: 0.1, sigma: 0.5, k: 1}, paths=2000, keep=[x, y],
+                    **{**of_diagonal, "step": 1 / 16384})
+
+
+def test_a_study_that_was_killed_goes_on_along_the_same_paths(tmp_path):
+    my.solve(diagonal(), {mu: 0.1, sigma: 0.5, k: 1}, **of_diagonal)  # so that the other process finds the kernel
+    child = subprocess.Popen([sys.executable, "-c", SLOW, str(tmp_path / "store")], stdout=subprocess.PIPE, text=True)
+    assert child.stdout.readline() == "begun\n"
+    child.send_signal(signal.SIGKILL)
+    child.communicate(timeout=60)
+    before = my.open_study(tmp_path / "store").done
+    assert 0 < before < 2000
+    result = long_study().run(tmp_path / "store", device="cpu:2")
+    assert result.complete and result.instances == 2000 - before
+    expected = long_study().run(device="cpu:2")
+    np.testing.assert_array_equal(result["x_end"], expected["x_end"])
+    np.testing.assert_array_equal(result["y_end"], expected["y_end"])
+
+
+# -- The model ---------------------------------------------------------------------------------------------------------
+
+def test_a_model_shows_its_noise():
+    model = my.model({x: mu * x - y, y: 0}, noise={x: {W: sigma * x, V: -1}, y: {V: 1}}, name="wells")
+    assert repr(model) == "<myriad model wells: dx = (mu * x - y) dt + (sigma * x) dW + (-1) dV; dy = dV>"
+    assert model.latex() == "\n".join([
+        r"\begin{aligned}",
+        r"\mathrm{d} x &= \left(\mu \, x - y\right) \, \mathrm{d} t + \left(\sigma \, x\right) \, \mathrm{d} W"
+        r" + \left(-1\right) \, \mathrm{d} V \\",
+        r"\mathrm{d} y &= \mathrm{d} V", r"\end{aligned}"])
+    own = my.model({x: -k, y: 0.5}, noise={"x": "sigma"}, parameters="sigma")
+    assert repr(own) == "<myriad model model: dx = (-k) dt + sigma dW_x; dy = 0.5 dt>"
+    assert r"\mathrm{d} x &= \left(-k\right) \, \mathrm{d} t + \sigma \, \mathrm{d} W_{x} \\" in own.latex()
+    assert r"\mathrm{d} W_{x}" in own._repr_html_()
+    taken = my.model({my.state("W_1"): k}, noise={"W_1": 1})
+    assert r"\mathrm{d} B_{W_{1}}" in taken.latex()  # W would be taken for the state
+
+
+def test_noise_of_texts_and_functions():
+    by_text = my.model("x' = mu*x; w' = 0", parameters="mu sigma",
+                       noise={"x": {"W": "sigma*x"}, "w": {"W": 1}})
+    assert by_text.cpp() == shared_noise().cpp()
+    by_function = my.model(lambda t, s, mu: [mu * s[0], 0.0], states="x w", noise={x: {W: sigma * x}, w: {"W": 1}})
+    assert by_function.cpp() == shared_noise().cpp()
+
+
+def test_the_cpp_has_a_diffusion():
+    text = shared_noise().cpp()
+    assert "enum noise { W, n_noise };" in text and "additive_noise" not in text
+    assert "return {myriad::vec<R, n_noise>{p[sigma] * y[x]}, myriad::vec<R, n_noise>{R(1)}};" in text
+    text = my.model({x: -x, y: x}, noise={y: sigma * my.cos(my.time)}).cpp()
+    assert "static constexpr bool additive_noise = true;" in text and "enum noise" not in text
+    assert "return {R(0), p[sigma] * myriad::cos(t)};" in text
+    assert shared_noise().hash != my.model({x: mu * x, w: 0}, noise={x: {W: sigma * x}}).hash
+    alone = my.model({x: -k * x}, noise={x: {W: k, V: x}}).cpp()
+    assert "return myriad::vec<myriad::vec<R, n_noise>, n_state>{myriad::vec<R, n_noise>{p[k], y[x]}};" in alone
+
+
+def test_processes_are_numbered_as_noise_names_them():
+    assert my.model({x: 0, y: 0}, noise={y: {V: 1}, x: {W: 1, V: 2}}).noise.names == ["V", "W"]
+
+
+@pytest.mark.parametrize("given, said", [
+    (dict(noise={k: 1}), r"noise has a factor of 'k' \(test_noise.py:\d+\), which is no state: there are x, y"),
+    (dict(noise={x: 1, "x": 2}), "'x' is given twice in noise"),
+    (dict(noise={x: {W: 1, "W": 2}}), "'W' is given twice in the noise of x"),
+    (dict(noise={x: {W: 1}, y: 2}), "noise has a factor of y, for a Wiener process of its own, and names processes of "
+                                    "x .*: name them for all, as in {y: {W: factor}}"),
+    (dict(noise={x: {}}), "noise names no Wiener process"),
+    (dict(noise={x: {k: 1}}), r"the noise of x has a factor of k .*: name Wiener processes, as from my.wiener"),
+    (dict(noise={x: [1, 2]}), "the noise of x: "),
+    (dict(noise=3), "noise is a int"),
+    (dict(noise={x: W}), "the Wiener process W stands in an expression or is assigned .*a key of noise= alone"),
+    (dict(noise={x: {W: 1}}, after_step={W: 1}), "the Wiener process W stands in an expression or is assigned"),
+    (dict(noise={x: {"y": 1}}), "'y' names both a state and a Wiener process"),
+    (dict(noise={x: my.parameter("diffusion")}), "'diffusion' names a parameter .* in a model with noise"),
+    (dict(noise={x: 1}, events=my.event(x)), "a model with noise has no events and triggers yet .*after_step"),
+    (dict(noise={x: 1}, triggers=my.trigger(x > 1, do={y: 1})), "a model with noise has no events and triggers yet"),
+    (dict(noise={x: 1}, accessories={"a": my.phase_maximum(x)}), "has no extrema and integrals over a phase yet"),
+    (dict(noise={x: 1}, mass_matrix={x: 2}), "a model with noise has no mass matrix yet"),
+    (dict(noise={x: 1}, initialise={my.t_end: 3}), "a model with noise has no hooks that assign t_begin or t_end yet"),
+])
+def test_what_noise_is_no_noise(given, said):
+    with pytest.raises(my.Error, match=said):
+        my.model({x: -k * x, y: x}, **given)
+
+
+def test_a_process_in_an_equation_is_refused():
+    with pytest.raises(my.Error, match="the Wiener process W stands in an expression"):
+        my.model({x: -k * x + W})
+    with pytest.raises(my.Error, match="W is no state but a Wiener process"):
+        my.model({W: 1.0})
+
+
+def test_noise_of_coupled_units_is_refused():
+    of_units, = my.units(4).states("x")
+    with pytest.raises(my.Error, match="a model with noise has no coupled units yet"):
+        my.model({of_units: -of_units}, noise={of_units: 1})
+
+
+# -- Calls that do not fit ---------------------------------------------------------------------------------------------
+
+@pytest.fixture
+def nothing_compiles(monkeypatch):
+    """What is refused is refused before any work."""
+    monkeypatch.setattr("myriad_ode.solving.solve.kernel_for", None)
+    monkeypatch.setattr("myriad_ode.studies.study.kernel_for", None)
+
+
+def call(model, **more):
+    values = dict.fromkeys(model.parameters, 1.0)
+    return my.solve(model, values, **{**dict(start=dict.fromkeys(model.states, 1), time=(0, 1), step=0.1), **more})
+
+
+crossed = my.model({x: -x, y: -y}, noise={x: y, y: 1})
+many = my.model({x: 0}, noise={x: {f"W{i}": 1 for i in range(257)}})
+
+
+@pytest.mark.parametrize("model, more, said", [
+    (diagonal(), dict(step=None), "euler_maruyama takes fixed steps: give step="),
+    (diagonal(), dict(method="tsitouras_5"), 'the model has noise, which tsitouras_5 would ignore: give '
+     'method="euler_maruyama", "milstein", "stochastic_heun" or "sra1"'),
+    (diagonal(), dict(method="rodas_5p"), "the model has noise, which rodas_5p would ignore"),
+    (diagonal(), dict(method="em"), "there is no method 'em': use \"euler_maruyama\""),
+    (diagonal(), dict(control="pi_control"), "euler_maruyama takes fixed steps and has no step-size control"),
+    (my.model({x: -x}), dict(method="milstein"), "milstein is for equations with noise, and the model has none"),
+    (my.model({x: -x}), dict(paths=3), "paths is 3, and the model has no noise"),
+    (diagonal(), dict(paths=0), "paths is 0: give the number of paths"),
+    (diagonal(), dict(paths=1.5), "paths is 1.5: give the number of paths"),
+    (diagonal(), dict(paths=3, size=4), "3.*4|4.*3"),
+    (shared_noise(), dict(method="milstein"), "milstein takes a Wiener process for each state, and the model names "
+     "processes, which states may share: give method=\"euler_maruyama\""),
+    (crossed, dict(method="milstein"), "whose factor of a state depends on no other state, and that of x depends on y"),
+    (diagonal(), dict(method="sra1"), "sra1 takes noise that depends on no state, and that of the model depends on x"),
+    (many, {}, "the model has 257 Wiener processes, and there may be 256 in double precision"),
+    (diagonal(), dict(free=[k]), "the model has noise, and derivatives along its paths are not there yet"),
+    (diagonal(), dict(interpreted=True), "the model cannot be interpreted, as it has noise: install a C"),
+])
+def test_what_does_not_fit_is_refused_by_solve(model, more, said, request):
+    if "interpreted" not in more:
+        request.getfixturevalue("nothing_compiles")
+    with pytest.raises(my.Error, match=said):
+        call(model, **more)
+
+
+def test_what_does_not_fit_is_refused_by_studies(nothing_compiles):
+    def study(model, **more):
+        return my.study(model, {mu: [0.1, 0.2], sigma: 0.5}, **{**of_diagonal, "start": {x: 1, w: 0}, **more})
+
+    with pytest.raises(my.Error, match="milstein takes a Wiener process for each state"):
+        study(shared_noise(), method="milstein")
+    with pytest.raises(my.Error, match="euler_maruyama takes fixed steps: give step="):
+        study(shared_noise(), step=None)
+    with pytest.raises(my.Error, match="paths is 3, and the model has no noise"):
+        my.study(my.model({x: -x}), start={x: 1}, time=(0, 1), paths=3)
+
+
+def test_additive_noise_suits_all_methods(nothing_compiles):
+    shared = my.model({x: -x, y: -y}, noise={x: {W: k}, y: {W: 1}})
+    for method in methods.stochastic:
+        with pytest.raises(TypeError, match="not callable"):  # as nothing compiles: nothing has refused it
+            call(shared, method=method)
+
+
+def test_derivatives_and_fits_are_refused(nothing_compiles):
+    model, said = diagonal(), "the model has noise, and (derivatives|tangents|fits) along its paths are not there yet"
+    data = {"t": np.linspace(0, 1, 3), "y": np.ones(3)}
+    usual = dict(sweep={mu: 1, sigma: 1}, start={x: 1, y: 1}, step=0.1)
+    for refused in (lambda: my.with_tangents(model), lambda: my.with_sensitivities(model, [k]),
+                    lambda: my.fit(model, data, free={k: (0.1, 10)}, **usual),
+                    lambda: my.least_squares(model, data, free={k: (0.1, 10)}, **usual),
+                    lambda: my.batched(model, free=[k], of=[y], time=(0, 1), adjoint=True, **usual),
+                    lambda: my.batched(model, free=[k], of=[y], time=(0, 1), **usual).with_jacobian([1.0]),
+                    lambda: my.batched(model, free=[k], of=[y], time=(0, 1), **usual).vjp([1.0], [1.0])):
+        with pytest.raises(my.Error, match=said):
+            refused()
+
+
+def test_seeds_and_steps_of_paths_are_refused_without_noise_or_out_of_range():
+    plain = my.model({x: -x})
+    with pytest.raises(my.Error, match="seed is 3, but the model has no diffusion|seed is 3.*no noise"):
+        call(plain, seed=3)
+    for more, said in ((dict(seed=-1), "seed is -1"), (dict(seed=2**32), "seed is 4294967296"),
+                       (dict(seed=0.5), "seed is 0.5: give a whole number"),
+                       (dict(noise_step=0.03), "step is 0.1, which is neither a multiple of noise_step, 0.03")):
+        with pytest.raises(my.Error, match=said):
+            call(diagonal(), **more)
+
+
+def test_a_path_that_leaves_the_domain_of_a_root_ends_its_instance_alone():
+    model = my.model({x: 0}, noise={x: my.sqrt(x)})
+    run = my.solve(model, start={x: 0.3}, time=(0, 4), step=0.25, paths=200, seed=1)
+    assert {"success", "not_finite"} == set(run.status)
+
+
+# -- The library's side ------------------------------------------------------------------------------------------------
+
+def test_methods_for_noise_are_those_of_the_library():
+    found = {}
+    for header in (ROOT / "include/myriad/kernel/methods").glob("*.hpp"):
+        if taken := re.search(r"constexpr noise_taken noise = noise_taken::(\w+);", header.read_text("utf-8")):
+            found[header.stem] = taken[1]
+    assert set(found) == set(methods.stochastic) < set(my.methods)
+    assert methods.additive_noise == tuple(name for name, taken in found.items() if taken == "additive")
+    assert methods.diagonal_noise == tuple(name for name, taken in found.items() if taken == "diagonal")
+
+
+def test_a_model_in_cpp_takes_the_methods_for_noise(whole):
+    text = diagonal().cpp("written")
+    run = my.solve(my.CppModel(text, "written", "x y", "mu k sigma"), {"mu": 0.1, "sigma": 0.5, "k": 1}, paths=20,
+                   **{**of_diagonal, "start": {"x": 1, "y": 2}}, method="euler_maruyama")
+    np.testing.assert_array_equal(run["x"], whole["x"][:20])
