@@ -13,8 +13,8 @@ bistable = my.model({x: x - x**3}, noise={x: sigma}, after_step={my.end_phase: x
 
 run = my.solve(bistable, {sigma: [0.4, 0.5, 0.6, 0.7, 0.8]}, paths=2000, start={x: -1}, time=(0, 10_000),
                method="euler_maruyama", step=0.02, seed=1)
-times = run.t_last.reshape(run.shape)  # a row for each sigma, a column for each path
-mean, error = times.mean(axis=1), times.std(axis=1) / np.sqrt(times.shape[1])
+times = run.to_xarray()["t_last"]  # with the axes sigma and path
+mean, error = times.mean("path"), times.std("path") / times.sizes["path"]**0.5
 # end of snippet
 
 
@@ -34,14 +34,14 @@ def kramers(sigma):
 
 
 assert (run.status == "stopped_by_user").all()
-exact = np.array([expected(s) for s in run["sigma"].reshape(run.shape)[:, 0]])
+exact = np.array([expected(s) for s in times["sigma"].values])
 assert (np.abs(mean - exact) < 4 * error).all(), (mean, error, exact)
 
 amplitudes = np.linspace(0.38, 0.82, 45)
 figure, axes = plt.subplots(figsize=(5, 3.5), layout="constrained")
 axes.semilogy(amplitudes, [expected(s) for s in amplitudes], label="exact")
 axes.semilogy(amplitudes, [kramers(s) for s in amplitudes], "--", label="Kramers' rate")
-axes.errorbar(run["sigma"].reshape(run.shape)[:, 0], mean, error, fmt="o", markersize=4, label="2000 paths each")
+axes.errorbar(times["sigma"], mean, error, fmt="o", markersize=4, label="2000 paths each")
 axes.set(xlabel="sigma", ylabel="mean time over the barrier")
 axes.legend()
 figure.savefig("noise.png")

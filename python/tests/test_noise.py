@@ -2,6 +2,7 @@
 """Models with noise: against solutions that are functions of the path, what a path depends on, and what is refused."""
 
 import pathlib
+import pickle
 import re
 import signal
 import subprocess
@@ -69,12 +70,18 @@ def test_an_ornstein_uhlenbeck_process_has_its_mean_and_variance():
     n, rate = 20_000, 1.5
     model = my.model({y: -k * y}, noise={y: sigma})
     run = my.solve(model, {k: rate, sigma: 0.5}, start={y: 2}, time=(0, 1), paths=n, method="sra1", step=1 / 32,
-                   phases=2, record=[y], carry_on=False, seed=3)
+                   phases=2, record=[y], samples=3, seed=3)
     variance = 0.25 * (1 - np.exp(-2 * rate)) / (2 * rate)
     end = run["y"][:, 0]
     assert abs(end.mean() - 2 * np.exp(-rate)) < 4 * np.sqrt(variance / n)
     assert abs(end.var() - variance) < 4 * variance * np.sqrt(2 / n)
-    assert abs(np.corrcoef(run["y"].T)[0, 1]) < 1  # phases that begin anew have paths of their own
+    np.testing.assert_array_equal(run["y_sample"][:, 2], end)
+    middle = 0.25 * (1 - np.exp(-rate)) / (2 * rate)
+    assert abs(run["y_sample"][:, 1].var() - middle) < 4 * middle * np.sqrt(2 / n)
+    # a phase that begins anew has a path of its own
+    innovation = run["y"][:, 1] - end * np.exp(-rate)
+    assert abs(innovation.var() - variance) < 4 * variance * np.sqrt(2 / n)
+    assert abs(np.corrcoef(end, innovation)[0, 1]) < 4 / np.sqrt(n)
 
 
 def test_noise_may_depend_on_time_and_jump_with_it_where_steps_end():
@@ -84,6 +91,11 @@ def test_noise_may_depend_on_time_and_jump_with_it_where_steps_end():
     run = my.solve(model, start={w: 0}, time=(0, 1), paths=20_000, step=0.25, seed=2)
     assert run.accepted_steps.max() == 6  # those that end at jumps are shorter
     assert abs(run["w"].var() - 0.6) < 4 * 0.6 * np.sqrt(2 / 20_000)
+
+
+def test_a_state_that_noise_alone_moves_is_not_taken_for_a_constant():
+    equations = {w: 0, x: my.where(my.time < w, 1.0, 0.0)}
+    assert my.model(equations).stops and not my.model(equations, noise={w: 1}).stops
 
 
 # -- What a path depends on --------------------------------------------------------------------------------------------
@@ -197,6 +209,7 @@ def test_the_cpp_has_a_diffusion():
     text = my.model({x: -x, y: x}, noise={y: sigma * my.cos(my.time)}).cpp()
     assert "static constexpr bool additive_noise = true;" in text and "enum noise" not in text
     assert "return {R(0), p[sigma] * myriad::cos(t)};" in text
+    assert pickle.loads(pickle.dumps(shared_noise())).cpp() == shared_noise().cpp()
     assert shared_noise().hash != my.model({x: mu * x, w: 0}, noise={x: {W: sigma * x}}).hash
     alone = my.model({x: -k * x}, noise={x: {W: k, V: x}}).cpp()
     assert "return myriad::vec<myriad::vec<R, n_noise>, n_state>{myriad::vec<R, n_noise>{p[k], y[x]}};" in alone
@@ -324,8 +337,12 @@ def test_derivatives_and_fits_are_refused(nothing_compiles):
 
 def test_seeds_and_steps_of_paths_are_refused_without_noise_or_out_of_range():
     plain = my.model({x: -x})
-    with pytest.raises(my.Error, match="seed is 3, but the model has no diffusion|seed is 3.*no noise"):
-        call(plain, seed=3)
+    for more in (dict(seed=3), dict(noise_step=0.1)):
+        with pytest.raises(my.Error, match="(seed is 3|noise_step is 0.1), and the model has no noise"):
+            call(plain, **more)
+    with pytest.raises(my.Error, match="noise_step is 0.1, and the model has no noise"):
+        my.study(plain, start={x: 1}, time=(0, 1), noise_step=0.1)
+    my.study(plain, start={x: my.normal(0, 1)}, time=(0, 1), seed=-3)  # of random values
     for more, said in ((dict(seed=-1), "seed is -1"), (dict(seed=2**32), "seed is 4294967296"),
                        (dict(seed=0.5), "seed is 0.5: give a whole number"),
                        (dict(noise_step=0.03), "step is 0.1, which is neither a multiple of noise_step, 0.03")):

@@ -31,8 +31,9 @@ def model(equations: ByComponent | Callable[..., Any] | str, *, events: Event | 
           accessories: ByComponent | None = None, initialise: ByComponent | None = None,
           after_step: ByComponent | None = None, finalise: ByComponent | None = None,
           generate: ByComponent | None = None, states: Names | None = None, parameters: Names = (),
-          shared: Names = (), mass_matrix: npt.ArrayLike | ByComponent | None = None, tie_seed: int | None = None,
-          name: str | None = None, exact_float: bool = False, noise: ByComponent | None = None) -> Model:
+          shared: Names = (), mass_matrix: npt.ArrayLike | ByComponent | None = None,
+          noise: ByComponent | None = None, tie_seed: int | None = None,
+          name: str | None = None, exact_float: bool = False) -> Model:
     """Records a model.
 
     `equations` is a dictionary {state: its derivative}; or a function f(t, y, ...) that returns the derivatives, as for
@@ -55,13 +56,13 @@ def model(equations: ByComponent | Callable[..., Any] | str, *, events: Event | 
     named. It may be singular, so that equations are algebraic, if these determine their states (index one):
     `mass_matrix={c: 0}` makes 0 = f of the equation of c. For the method "rodas_5p" alone.
 
-    `tie_seed`, a whole number, puts actions of triggers that are due at one instant with the same priority into an
-    order that is random from instance to instance, and follows from it: the same in every run and on every device.
-
     `noise` makes the equations stochastic, dx = f dt + g dW: {state: g} gives each of these states a Wiener process of
     its own, {state: {W1: g1, W2: g2}} processes that states share, as from `my.wiener("W1 W2")` or by their names. The
     factors are expressions, as the equations are. For methods of their own with fixed steps, by default
     "euler_maruyama".
+
+    `tie_seed`, a whole number, puts actions of triggers that are due at one instant with the same priority into an
+    order that is random from instance to instance, and follows from it: the same in every run and on every device.
 
     `exact_float` makes a GPU take CUDA's own functions and quotients in single precision, within an ulp or two, and not
     the faster ones, within 1e-6 (of sine and cosine absolutely); elsewhere it changes nothing.

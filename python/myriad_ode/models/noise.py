@@ -207,6 +207,13 @@ def method_for(model: AnyModel, method: str | None, precision: str) -> str:
     return method
 
 
+def refuse_options_of_paths(method: str, seed: int, noise_step: float) -> None:
+    """Refuses options of paths for a method that follows none."""
+    for name, value in (("seed", seed), ("noise_step", noise_step)):
+        if method not in stochastic and value != 0:
+            raise Error(f"{name} is {value!r}, and the model has no noise, whose paths it is for: leave it out")
+
+
 def count_of_paths(model: AnyModel, paths: Any) -> int:
     """The number of paths of each instance of a sweep."""
     if model.has_noise is False:

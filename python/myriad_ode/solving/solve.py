@@ -18,7 +18,7 @@ from ..models import time_jumps
 from ..models.any_model import AnyModel
 from ..models.components import Components
 from ..models.methods import fixed_step, method_type
-from ..models.noise import count_of_paths, method_for
+from ..models.noise import count_of_paths, method_for, refuse_options_of_paths
 from ..models.once_per_phase import prepared
 from ..models.sensitivities import WithSensitivities, note_on, with_sensitivities
 from ..results.no_instances import EmptyEnsemble, EmptyReport, kernel as no_kernel
@@ -76,6 +76,7 @@ class _Call:
             options = with_derivatives(self.model, options, self.components)
         self.options = options
         method_type(self.method, self.control, options.samples is not None)  # refuses what does not exist
+        refuse_options_of_paths(self.method, options.seed, options.noise_step)
         if self.method in fixed_step and options.step is None:
             raise Error(f"{self.method} takes fixed steps: give step=")
         self.core_options, self.recorded, self.sampled = make_options(self.components, self.count, options)
@@ -186,7 +187,7 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
     events            changes of `direction`, `tolerance` or `stop_after` of events by name
     size              number of instances, if no array gives it
     paths             so many paths of each instance of the sweep, for a model with noise: a last axis of the sweep, so
-                      that path j of instance i is the instance i * paths + j
+                      that path j of instance i is the instance i * paths + j. Arrays are in the sweep, not in start=
     precision         "double" or "float"
     device            "cpu", "cpu:4" (threads), "cuda", "cuda:1" (the second GPU), or "auto", the first GPU if there is
                       one, and NVRTC to compile for it, and the CPU otherwise; or a list of GPUs, which divide the

@@ -25,7 +25,7 @@ from ..models import time_jumps
 from ..models.any_model import AnyModel
 from ..models.components import Components, listed, short_name
 from ..models.methods import fixed_step, method_type, stochastic
-from ..models.noise import count_of_paths, method_for
+from ..models.noise import count_of_paths, method_for, refuse_options_of_paths
 from ..models.once_per_phase import prepared
 from ..models.sensitivities import note_on
 from ..models.whole_numbers import check_whole_numbers
@@ -84,6 +84,7 @@ class Study:
         components = self._components = Components(model)
         seed = whole(options.seed if seed is None else seed, "seed", (1 << 63) - 1)
         options = dataclasses.replace(options, seed=seed if chosen in stochastic else 0)
+        refuse_options_of_paths(chosen, options.seed, options.noise_step)
         samples = options.samples
         times: Any = samples.get("times", ()) if isinstance(samples, Mapping) else samples
         if np.ndim(times) > 1:
