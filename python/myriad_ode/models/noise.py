@@ -72,7 +72,7 @@ class Noise:
     @property
     def is_additive(self) -> bool:
         """Whether no factor depends on a state."""
-        return not any(map(self._read_by, range(len(self.states))))
+        return self.dependent is None
 
     @property
     def crossing(self) -> tuple[str, str] | None:
