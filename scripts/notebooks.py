@@ -4,9 +4,9 @@
 
 Usage: scripts/notebooks.py [--check]
 
-A program with cells (`# %%`, and `# %% [markdown]` for text) has these cells. Of others the docstring is the text, and a
-cell begins and ends where a snippet of the documentation does. What a checker is told, as by `noqa`, is left out, and the
-program's folder, which a notebook cannot ask for, is written relative to that of the notebook.
+A program with cells (`# %%`, and `# %% [markdown]` for text) has these cells. Of others the docstring is the text, and
+a cell begins and ends where a snippet of the documentation does. What a checker is told, as by `noqa`, is left out, and
+the program's folder, which a notebook cannot ask for, is written relative to that of the notebook.
 
 Notebooks are in python/examples/notebooks, without results. --check names those that differ from their program, or have
 none: exit status 1.

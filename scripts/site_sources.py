@@ -6,9 +6,9 @@ Usage: scripts/site_sources.py FOLDER
 
 Copies docs/, CONTRIBUTING.md and CHANGELOG.md to FOLDER. A link to another file of the repository becomes a link to a
 page with that file, so that the site is whole without a repository beside it; one to a folder shows its files. A block
-of code gets its file as a caption. Sections between `<!-- tabs -->` and `<!-- end of tabs -->`, which a repository shows
-one below the other, become tabs with their headings as names; the choice holds for all pages. Exit
-status 1 if a link leads to a file that is not there.
+of code gets its file as a caption. Sections between `<!-- tabs -->` and `<!-- end of tabs -->`, which a repository
+shows one below the other, become tabs with their headings as names; the choice holds for all pages. Exit status 1 if a
+link leads to a file that is not there.
 """
 
 import os

@@ -45,7 +45,8 @@ def test_a_program_that_was_changed_and_a_notebook_without_one_are_named(script,
     programs = tmp_path / "examples"
     programs.mkdir()
     program = programs / "one.py"
-    program.write_text('# SPDX-License-Identifier: MIT\n"""About one."""\n\n# snippet: a\nx = 1\n# end of snippet\ny = 2\n')
+    program.write_text('# SPDX-License-Identifier: MIT\n"""About one."""\n\n'
+                       '# snippet: a\nx = 1\n# end of snippet\ny = 2\n')
     for name, value in (("ROOT", tmp_path), ("PROGRAMS", programs), ("NOTEBOOKS", programs / "notebooks")):
         monkeypatch.setattr(script, name, value)
     assert script.main([]) == 0 and script.main(["--check"]) == 0
