@@ -9,7 +9,7 @@ copyright = author  # noqa: A001, Sphinx's name for it
 _root = pathlib.Path(__file__).resolve().parent
 release = (_root / "version.txt").read_text(encoding="utf-8").strip()
 
-extensions = ["myst_parser"]
+extensions = ["myst_parser", "sphinx_design"]
 exclude_patterns = ["requirements.txt"]
 myst_enable_extensions = ["colon_fence", "substitution"]
 myst_heading_anchors = 4

@@ -65,5 +65,6 @@ pip_of "$environment" install --no-compile --no-deps "$wheels"/*.whl
 "$environment/bin/ruff" check python
 "$environment/bin/mypy" --no-error-summary -p myriad_ode
 "$environment/bin/mypy" --no-error-summary python/examples/*.py python/examples/case_studies/*.py
+"$environment/bin/mypy" --no-error-summary python/examples/how_to/*.py
 MYRIAD_TEST_WHEEL=$(realpath "$wheels"/*.whl) \
     "$environment/bin/python" -m pytest -q --numprocesses "$(nproc)" --dist loadfile "$@" python/tests

@@ -6,7 +6,9 @@ Usage: scripts/site_sources.py FOLDER
 
 Copies docs/, CONTRIBUTING.md and CHANGELOG.md to FOLDER. A link to another file of the repository becomes a link to a
 page with that file, so that the site is whole without a repository beside it; one to a folder shows its files. A block
-of code gets its file as a caption. Exit status 1 if a link leads to a file that is not there.
+of code gets its file as a caption. Sections between `<!-- tabs -->` and `<!-- end of tabs -->`, which a repository
+shows one below the other, become tabs with their headings as names; the choice holds for all pages. Exit status 1 if a
+link leads to a file that is not there.
 """
 
 import os
@@ -24,6 +26,20 @@ LANGUAGES = {".hpp": "c++", ".cpp": "c++", ".cu": "cuda", ".cuh": "cuda", ".py":
 LINK = re.compile(r"(?<!!)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s]+)\)")
 IMAGE = re.compile(r"!\[([^\]]*)\]\(([^)\s]+)\)")
 SNIPPET = re.compile(r"^<!-- snippet: (\S+)(?: \w+)? -->\n```(\S+)\n", flags=re.M)
+
+TABS = re.compile(r"^<!-- tabs -->\n(.*?)^<!-- end of tabs -->$", flags=re.M | re.S)
+FENCES = re.compile(r"(^```.*?^```$)", flags=re.M | re.S)
+
+
+def tabbed(match):
+    """Sections as a set of tabs."""
+    out = []
+    for part in FENCES.split(match[1]):
+        is_code = part.startswith("```")
+        out.append(part if is_code else re.sub(
+            r"^## (.*)$", r"::::::\n\n::::::{tab-item} \1\n:sync: \1", part, flags=re.M).strip("\n"))
+    text = "\n\n".join(part for part in out if part).removeprefix("::::::\n\n")  # the first one follows no other
+    return f":::::::{{tab-set}}\n:sync-group: language\n\n{text}\n\n::::::\n:::::::"
 
 
 def captioned(match):
@@ -78,6 +94,7 @@ class Site:
         text = "".join(parts)
         text = SNIPPET.sub(captioned, text)
         text = re.sub(r"^```sh$", "```bash", text, flags=re.M)
+        text = TABS.sub(tabbed, text)
         return re.sub(r"^<!--.*?-->\n", "", text, flags=re.M)
 
     def write(self, page, text):
@@ -91,12 +108,16 @@ class Site:
         title = f"---\norphan: true\n---\n# `{path.as_posix()}`\n\n"
         if (ROOT / path).is_dir():
             files = sorted(p.relative_to(ROOT) for p in (ROOT / path).iterdir()
-                           if p.is_file() and (p.suffix in LANGUAGES or p.suffix == ".md"))
+                           if p.is_file() and (p.suffix in LANGUAGES or p.suffix in (".md", ".ipynb")))
             below = [f"* [{p.name}]({os.path.relpath(self.page(p), pathlib.Path(page).parent)})" for p in files]
             self.write(page, title + "\n".join(below) + "\n")
             return
         if path.suffix == ".md":
             self.write(page, title + self.rewrite((ROOT / path).read_text(encoding="utf-8"), path, page))
+            return
+        if path.suffix == ".ipynb":
+            self.write(page, f"{title}{{download}}`Download the notebook <{path.name}>`\n")
+            shutil.copy(ROOT / path, self.folder / page.removesuffix(".md"))
             return
         text = (ROOT / path).read_text(encoding="utf-8")
         language = LANGUAGES.get(path.suffix, "text")

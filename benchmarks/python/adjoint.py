@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """What the gradient of a loss costs by forward sensitivities without error control, and by an adjoint: times over those
 of a call that gives the loss alone, and the largest difference of the two gradients in parts of the largest derivative.
-The tables of docs/gradients.md. Times are the best of several calls: processor time on CPUs, elapsed time on GPUs.
+The tables of docs/performance.md. Times are the best of several calls: processor time on CPUs, elapsed time on GPUs.
 
 Usage: adjoint.py [--device DEVICE] [--instances N] [--calls N] [--problems NAME...] [--sizes N...]
        [--method NAME] [--tolerance NUMBER] [--most-forward N]"""

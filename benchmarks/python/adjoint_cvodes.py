@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Gradients by the adjoint beside those of SUNDIALS CVODES' adjoint, which integrates the adjoint equations backwards.
 The loss is the sum of the squares of all states, each over its typical size, at ten times. Prints the table of
-docs/gradients.md: errors relative to the largest derivative by the logarithm of a parameter, with CVODES' forward
+docs/performance.md: errors relative to the largest derivative by the logarithm of a parameter, with CVODES' forward
 sensitivities at 1e-12 as the reference, and microseconds of processor time per instance, on one core. The equations are
 written once, here; SymPy makes the derivatives that CVODES needs from them, as C++. Needs SymPy, a C++ compiler and
 SUNDIALS (libsundials-dev).

@@ -187,7 +187,8 @@ def test_kernels_have_the_registers_that_nvcc_gives_them(tmp_path, request):
 
 def test_all_methods_hooks_and_events_compile(request):
     of_all = request.config.getoption("--all")
-    some = [case for case in cases if case[0] in (example_models.stick_slip, ring, pulsed, example_models.continuation)]
+    some = [case for case in cases if case[0] in (example_models.stick_slip, ring, pulsed, sharing,
+                                                          example_models.continuation)]
     wanted = [(case, a) for case in cases for a in architectures] if of_all else [(case, 90) for case in some]
     found = all_of(by_nvrtc, [*wanted, *((case, 90) for case in every_method if of_all)])
     assert all(0 < registers < 256 for registers, _ in found)
