@@ -55,8 +55,9 @@ std::vector<measurement> measure(std::int64_t size, const measure_options& how) 
 
 benchmark_case noise_case() {
     return {.name = "brownian_motion",
-            .work = "geometric Brownian motion of 3 states, mu = 1.5, sigma = 0.01, from 0.1 to t = 1, 256 steps by "
-                    "euler_maruyama",
+            .work =
+                "geometric Brownian motion of 3 states, mu = 1.5, sigma = 0.01, from 0.1 to t = 1, 256 steps by "
+                "euler_maruyama",
             .error = "relative difference of the first 64 paths from the same on the CPU",
             .allowed_error = 1e-4,
             .sizes = {8'388'608},

@@ -25,7 +25,7 @@ inline constexpr double arrival_part = 0.1, guess_part = 0.01, largest_part = 1.
 /// negative at 1: Newton's method, safeguarded by bisection, until the value is within `close` of zero. Six iterations
 /// are enough for a guess. Returns 1/2 if the coefficients are not finite.
 template <class R>
-MYRIAD_FUNCTION R cubic_root(R a, R b, R c, R d, R close) {
+MYRIAD_RARE_FUNCTION R cubic_root(R a, R b, R c, R d, R close) {
     constexpr R last = R(1) - R(4) * epsilon_of<R>;
     R low = R(0), high = R(1);
     const R fall = a - (((a + b) + c) + d);  // from one end to the other
