@@ -78,12 +78,8 @@ MUTATIONS = {
     # Together, each once
     "alone": ("general_locator.hpp", "redo.target == j || (redo.crossed[j] && (heads || jumps))", "redo.target == j",
               "functions fire together if their crossings cannot be told apart"),
-    "along_without_heading": ("general_locator.hpp", "(here[j] || narrow) && side[j] * heading[j] < R(0)",
-                              "(here[j] || narrow)",
+    "along_without_heading": ("general_locator.hpp", "here[j] && side[j] * heading[j] < R(0)", "here[j]",
                               "what fires along must be on its way across"),
-    "apart_in_a_bracket": ("general_locator.hpp", "const bool heads = (here[j] || narrow)",
-                           "const bool heads = here[j]",
-                           "what crosses between the same two times crosses together"),
     "jumps_apart": ("general_locator.hpp", "narrow && side[j] * step.g1[j] > band && !here[j]", "false",
                     "functions that jump at one instant fire together"),
     "undecided_left": ("general_locator.hpp", "undecided = undecided || (soon && !here[j]);", "", "the step is redone "

@@ -210,7 +210,7 @@ private:
         MYRIAD_UNROLL
         for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
             const R band = near.band(j);
-            const bool heads = (here[j] || narrow) && side[j] * heading[j] < R(0);
+            const bool heads = here[j] && side[j] * heading[j] < R(0);
             const bool jumps = narrow && side[j] * step.g1[j] > band && !here[j];
             const bool happens = redo.target == j || (redo.crossed[j] && (heads || jumps));
             events.put(j, i, happens, step.g1[j]);
