@@ -72,9 +72,7 @@ void prepared_call<R>::fill_options(const options& o, const call_facts& facts) {
     if (facts.adaptive()) a.step = std::clamp(a.step, a.minimum_step, a.maximum_step);
     if (a.model->has_diffusion) {
         const R cell = o.noise_step > 0 ? static_cast<R>(o.noise_step) : a.step;
-        const std::uint64_t key = key_of_paths(static_cast<std::uint64_t>(o.seed));
-        *array<path_constants<R>>(at.noise) = {
-            cell, std::sqrt(cell), {static_cast<std::uint32_t>(key), static_cast<std::uint32_t>(key >> 32)}};
+        *array<path_constants<R>>(at.noise) = path_constants_of(cell, static_cast<std::uint64_t>(o.seed));
     }
     a.growth_limit = static_cast<float>(o.growth_limit);
     a.shrink_limit = static_cast<float>(o.shrink_limit);

@@ -18,24 +18,17 @@
 namespace {
 
 using myriad::detail::get_lane;
-using myriad::detail::key_of_paths;
 using myriad::detail::parts_of_cell;
-using myriad::detail::path_constants;
+using myriad::detail::path_constants_of;
 using myriad::detail::path_interval;
 using myriad::detail::path_owner;
 using myriad::detail::path_place;
 using myriad::detail::set_lane;
 
 template <class R>
-path_constants<R> constants_of(R cell, std::uint64_t seed = 1) {
-    const std::uint64_t key = key_of_paths(seed);
-    return {cell, std::sqrt(cell), {static_cast<std::uint32_t>(key), static_cast<std::uint32_t>(key >> 32)}};
-}
-
-template <class R>
 path_interval<R> interval(path_place<R> from, path_place<R> to, std::int64_t instance, std::int32_t epoch = 0,
                           std::uint64_t seed = 1) {
-    path_interval<R> over{from, to, {}, constants_of(R(1), seed)};
+    path_interval<R> over{from, to, {}, path_constants_of(R(1), seed)};
     over.of.set(0, instance, epoch);
     return over;
 }
@@ -197,7 +190,7 @@ TEMPLATE_TEST_CASE("a path has the same bits in a plain lane and in packs, whate
     std::int64_t different = 0;
     for (int kind = 0; kind < 3; ++kind) {  // all over one cell, some over more or over parts, all over parts
         path_interval<S> over{};
-        over.constants = constants_of(R(0.25));
+        over.constants = path_constants_of(R(0.25), 1);
         path_interval<R> alone[lanes];
         for (int i = 0; i < lanes; ++i) {
             const bool parts = kind == 2 || (kind == 1 && i % 3 == 1), many = kind == 1 && i % 3 == 2;

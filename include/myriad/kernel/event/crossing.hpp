@@ -30,7 +30,7 @@ MYRIAD_RARE_FUNCTION R cubic_root(R a, R b, R c, R d, R close) {
     R low = R(0), high = R(1);
     const R fall = a - (((a + b) + c) + d);  // from one end to the other
     R x = a * reciprocal(fall);              // the secant
-    // Where it rises from zero: of the cubic without a, over x, or without b, too, over x again.
+    // Where it rises from zero, that secant would lead back to the start: those of the cubic without its root there.
     if (b >= R(0)) x = max(x, c > R(0) ? c * reciprocal(-d) : b * reciprocal(b + fall));
     MYRIAD_ROLLED
     for (int i = 0; i < 6; ++i) {

@@ -51,7 +51,8 @@ MYRIAD_FUNCTION R element(const vec<R, m>& values, int j) {
 /// The fraction of a step at which an event function crosses, from the cubic through its values and slopes at both
 /// ends, which have the signs of a function that falls. One whose sign at the start is not that of its side, as right
 /// after its event, crosses there if it goes on, and where it returns if it goes to its side. Without a slope it goes
-/// on if it has `left` the surface since its event, and has come to it again. A flight may stay within `close` of zero.
+/// on if it has `left` the surface since its event, and has come to it again. Of one that rises, small values
+/// do not show that the crossing is near.
 template <class R>
 MYRIAD_FUNCTION R fraction_at(const function_ends<R>& g, bool left, R close) {
     if (!(g.value > R(0)) && (g.slope < R(0) || (left && g.slope == R(0)))) return R(0);

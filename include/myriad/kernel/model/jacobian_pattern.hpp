@@ -107,18 +107,30 @@ struct slope_dependences {
     int instructions = 0;
 };
 
+/// Inputs that a model is evaluated with for what its functions depend on: none depends on the state. Integers have no
+/// value, so that a function that reads one is no constant expression.
+template <class Model, class S>
+struct traced_inputs : inputs<Model, S> {
+    constexpr traced_inputs() {
+        for (int i = 0; i < n_parameter<Model>; ++i) this->parameter[i] = S();
+        this->shared = of_shared_;
+        this->shared_integer = nullptr;
+        if constexpr (n_accessory < Model >> 0 && !accessories_are_outputs<Model>)
+            for (int i = 0; i < n_accessory<Model>; ++i) this->accessory[i] = S();
+    }
+    traced_inputs(const traced_inputs&) = delete;  // `shared` points into this one
+    traced_inputs& operator=(const traced_inputs&) = delete;
+
+private:
+    S of_shared_[n_shared<Model> > 0 ? n_shared<Model> : 1]{};
+};
+
 template <class Model>
 constexpr slope_dependences<Model> trace_slopes() {
     constexpr int n = n_state<Model>;
     using S = dependence<n + 1>;
-    // Integers have no value, so that a right-hand side that reads one is no constant expression.
-    inputs<Model, S> p;
-    for (int i = 0; i < n_parameter<Model>; ++i) p.parameter[i] = S();
-    const S shared[n_shared<Model> > 0 ? n_shared<Model> : 1]{};
-    p.shared = shared;
-    p.shared_integer = nullptr;
-    if constexpr (n_accessory < Model >> 0 && !accessories_are_outputs<Model>)
-        for (int i = 0; i < n_accessory<Model>; ++i) p.accessory[i] = S();
+    const traced_inputs<Model, S> traced;
+    const inputs<Model, S>& p = traced;
     vec<S, n> y;
     slope_dependences<Model> found;
     const auto variable = [&](int i) MYRIAD_LAMBDA {

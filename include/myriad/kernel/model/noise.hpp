@@ -49,13 +49,8 @@ template <class Model>
 constexpr noise_dependence trace_noise() {
     constexpr int n = n_state<Model>;
     using S = dependence<n + 1>;
-    inputs<Model, S> p;
-    for (int i = 0; i < n_parameter<Model>; ++i) p.parameter[i] = S();
-    const S shared[n_shared<Model> > 0 ? n_shared<Model> : 1]{};
-    p.shared = shared;
-    p.shared_integer = nullptr;
-    if constexpr (n_accessory < Model >> 0 && !accessories_are_outputs<Model>)
-        for (int i = 0; i < n_accessory<Model>; ++i) p.accessory[i] = S();
+    const traced_inputs<Model, S> traced;
+    const inputs<Model, S>& p = traced;
     vec<S, n> y;
     for (int i = 0; i < n; ++i) y[i] = S::of(i);
     const diffusion_type<Model, S> g = Model::template diffusion<S>(S::of(n), y, p);

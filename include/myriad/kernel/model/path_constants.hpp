@@ -2,6 +2,7 @@
 // What all paths of a call have in common, as the host gives it to kernels.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 namespace myriad::detail {
@@ -26,6 +27,13 @@ constexpr std::uint64_t key_of_paths(std::uint64_t seed) {
     z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9;
     z = (z ^ z >> 27) * 0x94d049bb133111eb;
     return z ^ z >> 31;
+}
+
+/// For cells of this length.
+template <class R>
+path_constants<R> path_constants_of(R cell, std::uint64_t seed) {
+    const std::uint64_t key = key_of_paths(seed);
+    return {cell, std::sqrt(cell), {static_cast<std::uint32_t>(key), static_cast<std::uint32_t>(key >> 32)}};
 }
 
 }  // namespace myriad::detail
