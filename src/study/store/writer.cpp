@@ -74,7 +74,7 @@ void writer::appear() {
 std::string writer::path_of(std::int64_t chunk) const { return message(folder_, "/claims/", chunk); }
 std::string writer::alive() const { return folder_ + "/writers/" + self_.id + "/alive"; }
 
-bool writer::is_dead(const std::string& path, process_identity* who) {
+bool writer::is_dead(const std::string& path, process_identity* who, const std::string& was) {
     // Opened and not only looked up, since NFS then asks its server instead of its cache.
     std::string text(4096, '\0');
     file_facts facts;
@@ -91,7 +91,8 @@ bool writer::is_dead(const std::string& path, process_identity* who) {
     if (other.id == self_.id) return false;
     const process_state state = self_.state_of(other);
     if (state != process_state::unknown) return state == process_state::ended;
-    return others_.is_silent(other.id.empty() ? path : other.id, facts.modified);
+    // Each path for itself: in a copied folder the claims are no more links to the sign of life, and differ in times.
+    return others_.is_silent(message(other.id, ' ', was.empty() ? path : was), facts.modified);
 }
 
 bool writer::take_away(const std::string& claim) {
@@ -101,7 +102,7 @@ bool writer::take_away(const std::string& claim) {
         throw file_error("taking over", claim, errno);
     }
     // Between the look at it and now, another process may have taken it over and claimed it.
-    if (!is_dead(taken)) {
+    if (!is_dead(taken, nullptr, claim)) {
         files_.link(taken, claim);
         files_.unlink(taken);
         return false;

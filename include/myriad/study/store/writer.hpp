@@ -56,7 +56,8 @@ public:
 private:
     std::string path_of(std::int64_t chunk) const;
     std::string alive() const;
-    bool is_dead(const std::string& path, process_identity* who = nullptr);
+    // Whether the writer of the claim or sign of life at `path` is dead; `was` is where that was before it was renamed.
+    bool is_dead(const std::string& path, process_identity* who = nullptr, const std::string& was = "");
     bool take_away(const std::string& claim);
     void remove_writer(const std::string& id) noexcept;
     void leave() noexcept;
