@@ -25,9 +25,9 @@ epidemic = my.model({s: -R0 * s * i / duration, i: (R0 * s * i - i) / duration},
 # end of snippet
 
 # snippet: solve
-usual = dict(start={s: 1 - 1e-4, i: 1e-4}, time=(0, 20_000), rtol=1e-9, atol=1e-9, method="tsitouras_5")
 draws = {R0: my.normal(2.5, 0.4), duration: my.uniform(4, 10)}
-study = my.study(epidemic, draws, draws=100_000, seed=1, keep=dict(end=[peak, day]), **usual)
+study = my.study(epidemic, draws, draws=100_000, seed=1, start={s: 1 - 1e-4, i: 1e-4}, time=(0, 20_000), rtol=1e-9,
+                 atol=1e-9, method="tsitouras_5", keep=dict(end=[peak, day]))
 # end of snippet
 
 # %%
