@@ -24,8 +24,8 @@ ON_CPUS = NUMERICS + ["backends/openmp"]
 REPORTS = {
     "docs/validation.md": (r"^\* sources: (\w+)", NUMERICS, 64, "scripts/validate.sh"),
     "docs/methods.md": (r"The figures are for commit (\w+)", ON_GPUS, 96, "scripts/method_registers.py"),
-    "validation/gpu/results.csv": (r"^# sources: (\w+)", ON_GPUS, 60, "scripts/validate.sh --device cuda"),
-    "benchmarks/results/h200.csv": (r"^# commit: (\w+)", ON_GPUS, 60, "scripts/gpu.sh --bench"),
+    "validation/gpu/results.csv": (r"^# sources: (\w+)", ON_GPUS, 96, "scripts/validate.sh --device cuda"),
+    "benchmarks/results/h200.csv": (r"^# commit: (\w+)", ON_GPUS, 96, "scripts/gpu.sh --bench"),
     "benchmarks/results/cpu.csv": (r"^# commit: (\w+)", ON_CPUS, 130, "scripts/bench.sh"),
 }
 CODE = re.compile(r"\.(hpp|cuh)$")
