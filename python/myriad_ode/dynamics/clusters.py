@@ -56,29 +56,36 @@ def lags(points: Array, tolerance: float) -> tuple[Array, Array]:
     return lag, error
 
 
-def _statistics(points: Array, is_cycle: bool = False) -> Array:
-    """Mean, deviation, minimum and maximum of each coordinate. But for whole cycles, averages are weighted by Hann's
-    window, so that they depend little on the part of a period that the points begin and end with."""
-    count = points.shape[1]
-    weights = np.ones(count) if is_cycle else np.sin(np.pi * (np.arange(count) + 0.5) / count)**2
-    weights /= weights.sum()
+def _hann(count: int) -> Array:
+    """Weights by Hann's window, with which averages depend little on the parts of a period at either end."""
+    weights = np.sin(np.pi * (np.arange(count) + 0.5) / count)**2
+    return weights / weights.sum()
+
+
+def _averages(points: Array, weights: Array) -> list[Array]:
+    """Mean and deviation of each coordinate."""
     mean = np.einsum("nkc,k->nc", points, weights)
-    square = np.einsum("nkc,k->nc", (points - mean[:, None])**2, weights)
-    return np.concatenate([mean, np.sqrt(square), points.min(axis=1), points.max(axis=1)], axis=1)
+    square = np.einsum("nkc,nkc,k->nc", points, points, weights)
+    return [mean, np.sqrt(np.maximum(square - mean**2, 0))]
 
 
 def features_of(points: Array, tolerance: float, may_return: bool) -> Features:
     """Features of orbits. With `may_return` points are those of a map, on which a cycle has a few points; its features
     are those of whole cycles."""
     orbits, count, _ = points.shape
-    halves = [_statistics(points[:, :count // 2]), _statistics(points[:, count // 2:])]
-    values, error = _statistics(points), np.abs(halves[0] - halves[1]).max(axis=1)
+    halves = [points[:, :count // 2], points[:, count // 2:]]
+    first, second = ([*_averages(half, _hann(half.shape[1])), half.min(axis=1), half.max(axis=1)] for half in halves)
+    error = np.abs(np.concatenate(first, axis=1) - np.concatenate(second, axis=1)).max(axis=1)
+    extremes = [np.minimum(first[2], second[2]), np.maximum(first[3], second[3])]
+    values = np.concatenate([*_averages(points, _hann(count)), *extremes], axis=1)
     lag = np.zeros(orbits, int)
     if may_return:
         lag, off = lags(points, tolerance)
         error = np.where(lag > 0, off, error)
         for k in np.unique(lag[lag > 0]):
-            values[lag == k] = _statistics(points[lag == k][:, count - count // k * k:], is_cycle=True)
+            of, whole = lag == k, count // k * k
+            values[of, :2 * points.shape[2]] = np.concatenate(
+                _averages(points[of, count - whole:], np.full(whole, 1 / whole)), axis=1)
     return Features(values, error, lag)
 
 

@@ -107,18 +107,20 @@ class Motion:
             return self._of_flow(starts, transient, count)
         run = self._run(starts, phases=transient + count,
                         record={"from_phase": transient, "states": self.states, "time": True})
-        points = np.stack([run.records[name] for name in self.states], axis=2)
+        points = _together([run.records[name] for name in self.states])
         return Orbits(points, self._ends(run), run.status_codes, run.failed, run["t"])
 
     def _of_flow(self, starts: Mapping[str, Array], transient: int, count: int) -> Orbits:
         before, window = transient * self.phase, count * self.phase
         times = self.begin + before + window * (np.arange(samples_of_phase * count) + 0.5) / (samples_of_phase * count)
         run = self.sampled(starts, times, self.begin + before + window)
-        points = np.stack([run.samples[name] for name in self.states], axis=2)
+        points = _together([run.samples[name] for name in self.states])
         ends = self._ends(run)
-        at_end = np.stack([ends[name] for name in self.states], axis=1)[:, None]
-        early = np.isnan(points) & ~run.failed[:, None, None]  # where a hook has ended the phase
-        return Orbits(np.where(early, at_end, points), ends, run.status_codes, run.failed, None)
+        early = ~run.failed & (run.stored_samples < len(times))  # where a hook has ended the phase
+        if early.any():
+            at_end = np.stack([ends[name][early] for name in self.states], axis=1)[:, None]
+            points[early] = np.where(np.isnan(points[early]), at_end, points[early])
+        return Orbits(points, ends, run.status_codes, run.failed, None)
 
     def sampled(self, starts: Mapping[str, Array], times: Array, end: float) -> Run:
         """A run in one phase with samples at some times."""
@@ -136,6 +138,11 @@ class Motion:
         each = count * len(self.states) * (1 if self.is_map else samples_of_phase)
         length = max(64, _most_numbers // each)
         return [slice(begin, min(begin + length, size)) for begin in range(0, size, length)]
+
+
+def _together(columns: Sequence[Array]) -> Array:
+    """Arrays of equal shape, one for each coordinate, as one whose last axis they are along; in memory each is whole."""
+    return np.moveaxis(np.stack(columns), 0, -1)
 
 
 def _refuse(model: AnyModel, options: Mapping[str, Any]) -> None:
@@ -185,4 +192,4 @@ class Scale:
         for c, is_angle in enumerate(self._angles):
             column = points[..., c]
             columns += [np.cos(column), np.sin(column)] if is_angle else [(column - self.middle[c]) / self.extent[c]]
-        return np.stack(columns, axis=-1)
+        return _together(columns)

@@ -91,10 +91,13 @@ class Search:
 
     def _are_good(self, orbits: Orbits) -> Array:
         """Which orbits have neither failed nor diverged."""
-        plain = [c for c, name in enumerate(self.motion.states) if name not in self.motion.angles]
-        with np.errstate(invalid="ignore"):
-            within = (np.abs(orbits.points[:, :, plain]) <= self.bound).all(axis=(1, 2))
-        return ~orbits.failed & within & np.isfinite(orbits.points).all(axis=(1, 2))
+        well = ~orbits.failed
+        for c, name in enumerate(self.motion.states):
+            column = orbits.points[..., c]
+            with np.errstate(invalid="ignore"):
+                extent = np.maximum(column.max(axis=1), -column.min(axis=1))
+                well &= np.isfinite(extent) if name in self.motion.angles else extent <= self.bound
+        return well
 
     def _turn(self, numbers: Array, values: Mapping[str, Array], transient: int,
               is_last: bool) -> tuple[Array, dict[str, Array], Array]:
@@ -132,7 +135,8 @@ class Search:
             orbits = self.motion.orbits({n: of[part] for n, of in values.items()}, transient, self.phases)
             well = self._are_good(orbits)
             self.status[numbers[part]] = orbits.status
-            points = np.where(well[:, None, None], orbits.points, 0.0)
+            points = orbits.points
+            points[~well] = 0.0
             parts.append(features_of(self.scale(points), self.tolerance, self.motion.is_map))
             ends.append(orbits.ends)
             good.append(well)
