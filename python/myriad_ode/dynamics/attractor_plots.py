@@ -19,11 +19,15 @@ if TYPE_CHECKING:
     from ..symbolic.types import Array, Component
 
 
-def legends(found: Any) -> dict[int, str]:
+def legends(found: Any, across: str, up: str) -> dict[int, str]:
     """What the legend says of each attractor: its name, its place too if another has the name, and its share."""
     names = [one.name for one in found]
-    return {i: f"{one.name}{', ' + one.place if names.count(one.name) > 1 else ''}\n{100 * one.share:.3g} %"
-            for i, one in enumerate(found)}
+
+    def place(one: Any) -> str:
+        shown = [one.place([state]) for state in (across, up) if state in one.points]
+        return "\n" + ",\n".join(shown) if names.count(one.name) > 1 else ""
+
+    return {i: f"{one.name}{place(one)}\n{100 * one.share:.3g} %" for i, one in enumerate(found)}
 
 
 def _pair(found: Any, values: Mapping[str, Array], x: Component | None, y: Component | None) -> tuple[str, str, bool]:
@@ -45,15 +49,17 @@ def _pair(found: Any, values: Mapping[str, Array], x: Component | None, y: Compo
 def basins(found: Any, values: Mapping[str, Array], x: Component | None, y: Component | None, axes: Axes | None,
            style: dict[str, Any]) -> Any:
     across, up, is_grid = _pair(found, values, x, y)
-    names = legends(found)
+    names = legends(found, across, up)
     labels = np.ma.masked_less(found.labels, 0)
     xlabel, ylabel = f"{across} at the start", f"{up} at the start"
     if is_grid:
         order = [name for name, _ in found.start.axes]
         grid = np.ma.asarray(np.moveaxis(labels, (order.index(across), order.index(up)), (0, 1)))
         of = dict(found.start.axes)
+        lost = np.ma.getmaskarray(grid).mean()
         axes = plots.parameter_map(of[across], of[up], grid.reshape(grid.shape[:2]), names=names, xlabel=xlabel,
-                                   ylabel=ylabel, axes=axes, **style)
+                                   ylabel=ylabel, axes=axes, **style,
+                                   zlabel=f"grey: {100 * lost:.3g} % come to no attractor" if lost else "")
     else:
         axes = axes_of(axes, figsize=(6.4, 4.8))
         _scattered(axes, values[across], values[up], labels.ravel(), names, style)

@@ -14,7 +14,7 @@ from ..base.errors import Error
 from ..base.statuses import status_names
 from ..sweeps.inputs import real
 from . import attractor_plots
-from .orbits import Motion, counted
+from .orbits import Motion, counted, wrapped
 from .search import Found, Search, diverged, unsettled
 from .starts import Starts, constant_values
 
@@ -65,15 +65,15 @@ class Attractor:
             return self.kind
         return f"cycle of period {self.period:.4g}" + (f" ({self.returns} returns)" if self.returns > 1 else "")
 
-    @property
-    def place(self) -> str:
-        """Where it is, in the ranges of its states."""
-        return ", ".join(_range(name, low, high) for name, (low, high) in self.ranges.items())
+    def place(self, states: Sequence[str] = ()) -> str:
+        """Where it is in words, in the ranges of its states, or of some of them."""
+        return ", ".join(_range(name, low, high) for name, (low, high) in self.ranges.items()
+                         if not states or name in states)
 
     def __repr__(self) -> str:
         share = f"{100 * self.share:.4g}" + ("" if np.isnan(self.error) else f" +- {100 * self.error:.2g}")
         exponent = "" if np.isnan(self.exponent) else f", largest exponent {self.exponent:.4g}"
-        return f"<{self.name}, {self.place}{exponent}; {share} % of the starts>"
+        return f"<{self.name}, {self.place()}{exponent}; {share} % of the starts>"
 
 
 def _range(name: str, low: float, high: float) -> str:
@@ -102,13 +102,16 @@ class Attractors(Sequence[Attractor]):
         shares = counts / size
         error = np.sqrt(shares * (1 - shares) / size) if starts.is_random else np.full(len(found), np.nan)
         self._attractors = [
-            Attractor(one.kind, one.period, one.returns, dict(zip(states, one.points.T)), one.exponent,
+            Attractor(one.kind, one.period, one.returns, self._by_state(states, one.points), one.exponent,
                       one.steady_state, int(count), float(share), float(off), one.end)
             for one, count, share, off in zip(found, counts, shares, error)]
         self.notes: list[str] = search.notes  #: what to know of the result
         codes, of_failed = np.unique(search.status[label == diverged], return_counts=True)
         #: starts without an attractor by how their instances ended: "success" of those that have left all bounds
         self.diverged: dict[str, int] = {status_names[code]: int(count) for code, count in zip(codes, of_failed)}
+
+    def _by_state(self, states: Sequence[str], points: Array) -> dict[str, Array]:
+        return {name: wrapped(of) if name in self._angles else of for name, of in zip(states, points.T)}
 
     def __getitem__(self, number: Any) -> Any:
         return self._attractors[number]
@@ -202,7 +205,7 @@ class Attractors(Sequence[Attractor]):
         return "\n".join([*lines, *(f"note: {note}" for note in self.notes)])
 
     def _repr_html_(self) -> str:
-        rows = [(str(i), one.name, one.place, f"{100 * one.share:.4g} %") for i, one in enumerate(self)]
+        rows = [(str(i), one.name, one.place(), f"{100 * one.share:.4g} %") for i, one in enumerate(self)]
         return (html.paragraphs([self._head()]) + html.columns(["", "attractor", "where", "starts"], rows)
                 + html.paragraphs(repr(self).splitlines()[1 + len(self):]))
 

@@ -49,7 +49,9 @@ def lags(points: Array, tolerance: float) -> tuple[Array, Array]:
         open_ = np.flatnonzero((lag == 0) & near.any(axis=1))
         for k in np.unique(first[open_]):
             of = open_[first[open_] == k]
-            most = np.abs(points[of, k:] - points[of, :-k]).max(axis=(1, 2))
+            after = (count // k - 1) * k  # as many returns as there are, as on a torus it may drift
+            most = np.maximum(*(np.abs(points[of, shift:] - points[of, :-shift]).max(axis=(1, 2)) for shift in
+                                (k, after)))
             lag[of[most <= tolerance]] = k
             error[of] = np.where(most <= tolerance, most, error[of])
         near[open_, first[open_] - 1] = False

@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from ..base import component_kinds as kinds
 from ..base.errors import Error
 from ..models.recorded import RecordedModel
 from ..results.exponents import exponents
+from ..symbolic.node import symbols_of
 from .clusters import lags
 from .orbits import samples_of_phase
 from .steady_states import Equations, SteadyState
@@ -35,7 +37,9 @@ def returns_of(points: Array, tolerance: float) -> int:
 
 def equations_of(motion: Motion) -> Equations | None:
     """The equations of a flow, where steady states can be found."""
-    if motion.is_map or not isinstance(motion.model, RecordedModel) or motion.model.mass_matrix is not None:
+    model = motion.model
+    if motion.is_map or not isinstance(model, RecordedModel) or model.mass_matrix is not None or any(
+            symbol.value[0] in kinds.accessories for symbol in symbols_of(model.equations.values())):
         return None
     return Equations(motion.model, motion.values)
 
@@ -43,7 +47,7 @@ def equations_of(motion: Motion) -> Equations | None:
 def steady_state_near(equations: Equations, end: Mapping[str, Any], reach: Array) -> SteadyState | None:
     """The steady state within reach of the end of an orbit, if Newton's method finds one."""
     state = np.array([float(end[name]) for name in equations.states])
-    found, arrived = equations.newton(state[None], 50)
+    found, arrived = equations.newton(state[None], 100)
     if not arrived[0] or (np.abs(found[0] - state) > reach).any():
         return None
     return equations.steady_state(found[0])
@@ -84,9 +88,19 @@ def _cycle(points: Array, scaled: Array, step: float) -> Cycle | None:
             continue
         whole, part = int(lag), lag - int(lag)
         later = (1 - part) * scaled[whole:-1] + part * scaled[whole + 1:]
-        if np.abs(later - scaled[:len(later)]).max() <= 0.01 * size + 0.5 * longest**2 / size:
+        rounding = 0.01 * size + 0.5 * longest**2 / size
+        if np.abs(later - scaled[:len(later)]).max() <= rounding and _returns_last(scaled, lag, rounding):
             return Cycle(lag * step, points[:whole])
     return None
+
+
+def _returns_last(points: Array, lag: float, rounding: float) -> bool:
+    """Whether a path is still where it was after as many returns as there are, as on a torus it may drift."""
+    last = int((len(points) - 4) // lag * lag)
+    k = last - 2 + int(((points[last - 2:last + 3] - points[0])**2).sum(axis=1).argmin())
+    part = _refined(points, min(k, len(points) - 2))
+    at = points[int(part)] + (part - int(part)) * (points[int(part) + 1] - points[int(part)])
+    return bool(np.abs(at - points[0]).max() <= rounding)
 
 
 def _refined(points: Array, k: int) -> float:

@@ -163,6 +163,11 @@ def _refuse(model: AnyModel, options: Mapping[str, Any]) -> None:
     refuse_options([name for name in options if name not in known], known, "solve")
 
 
+def wrapped(angles: Array) -> Array:
+    """Angles from -pi to pi."""
+    return (angles + np.pi) % (2 * np.pi) - np.pi
+
+
 def counted(value: int, name: str, least: int) -> int:
     """A number of phases, at least so many."""
     if whole(value, name) < least:
@@ -176,15 +181,18 @@ class Scale:
 
     def __init__(self, motion: Motion, moving: Array, ends: Array) -> None:
         self._angles = [name in motion.angles for name in motion.states]
-        self.middle, self.extent = np.zeros(len(motion.states)), np.ones(len(motion.states))
+        self.middle, self.extent = np.zeros((2, len(motion.states)))
         for c, is_angle in enumerate(self._angles):
             column = moving[..., c]
             if is_angle or not column.size:
+                self.extent[c] = 1.0
                 continue
             low, high = np.quantile(column.min(axis=1), 0.05), np.quantile(column.max(axis=1), 0.95)
             first, middle, last = np.quantile(ends[..., c], (0.01, 0.5, 0.99))
             extent = max(last - first, 0.1 * (high - low), 1e-6 * abs(middle))
-            self.middle[c], self.extent[c] = middle, extent or 1.0
+            self.middle[c], self.extent[c] = middle, extent
+        least = 1e-6 * self.extent.max()  # what varies less does not vary, as a state on a section
+        self.extent = np.maximum(self.extent, least if least > 0 else 1.0)
 
     def __call__(self, points: Array) -> Array:
         """Points, states along the last axis, in these coordinates."""

@@ -25,6 +25,7 @@ diverged, unsettled = -1, -2
 _most_leaders = 512
 _pilots = 64
 _rounds, _longer = 3, 4  # in each, transients are so many times as long
+_more = 16
 
 
 class Found(NamedTuple):
@@ -176,7 +177,7 @@ class Search:
         """What some orbits are on."""
         ends = [{name: value[i] for name, value in late.ends.items()} for i in places]
         if self.motion.is_map:
-            return [self._of_map(late, i, end) for i, end in zip(places, ends)]
+            return self._with_more([self._of_map(late, i, end) for i, end in zip(places, ends)])
         found: list[Found | None] = [self._at_rest(late.points[i], end) for i, end in zip(places, ends)]
         moving = [j for j, one in enumerate(found) if one is None]
         if moving:
@@ -195,6 +196,18 @@ class Search:
             return Found(aperiodic, np.nan, 0, np.nan, None, points, end)
         period = abs(float((late.times[i, -lag:] - self.motion.begin).sum()))
         return Found(cycle, period, lag, np.nan, None, points[-lag:], end)
+
+    def _with_more(self, found: list[Found]) -> list[Found]:
+        """The same with more points of those on a map that do not return: on a torus they may fill it slowly."""
+        open_ = [j for j, one in enumerate(found) if one.kind == aperiodic]
+        if open_:
+            ends = {name: np.array([found[j].end[name] for j in open_]) for name in found[open_[0]].end}
+            orbits = self.motion.orbits(ends, 0, _more * self.phases)
+            good = self._are_good(orbits)
+            for i, j in enumerate(open_):
+                if good[i]:
+                    found[j] = found[j]._replace(points=orbits.points[i])
+        return found
 
     def _at_rest(self, points: Array, end: dict[str, float]) -> Found | None:
         """The steady state that an orbit of a flow is at, if it is at one."""
@@ -251,7 +264,8 @@ class Search:
     def _ordered(self, found: list[Found], label: Array) -> tuple[list[Found], Array]:
         """Attractors with most starts first, equal ones in the order of their places."""
         counts = np.bincount(label[label >= 0], minlength=len(found))
-        order = sorted(range(len(found)), key=lambda i: (-counts[i], *found[i].points.mean(axis=0)))
+        order = sorted(range(len(found)), key=lambda i: (
+            -counts[i], *np.round(self.scale(found[i].points).mean(axis=0), 6)))
         return [found[i] for i in order], _relabelled(label, order, len(found))
 
 

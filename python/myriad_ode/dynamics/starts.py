@@ -34,7 +34,7 @@ class Starts:
             raise Error(f"{', '.join(random)} is drawn at random: give the number of draws, as in draws=10_000" if random
                         else "there are draws, and nothing is drawn: give start={x: my.uniform(-2, 2), ...}")
         generator = np.random.default_rng(whole(seed, "seed"))
-        self.values: dict[str, Array] = {}
+        values: dict[str, Array] = {}
         for name in sorted(sweep.names):
             called = components.component(name)
             if components.place.get(called, ("",))[0] not in kinds.recorded:
@@ -42,10 +42,12 @@ class Starts:
                 raise unknown(name, known, "state that start= can set")
             if name in random:
                 draw = getattr(generator, random[name].kind)
-                self.values[called] = draw(*random[name].arguments, size=sweep.size)
+                values[called] = draw(*random[name].arguments, size=sweep.size)
             else:
-                self.values[called] = np.asarray(sweep.values(name))
-        missing = [name for name in components.states if name not in self.values and name not in components.defaults]
+                values[called] = np.asarray(sweep.values(name))
+        #: initial states, and accessories, in the order of the model
+        self.values = {name: values[name] for name in components.place if name in values}
+        missing = [name for name in components.states if name not in values and name not in components.defaults]
         if missing:
             raise Error(f"the initial value of {', '.join(map(repr, missing))} is missing: give it in start=")
         if not sweep.size:

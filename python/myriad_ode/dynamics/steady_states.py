@@ -90,6 +90,9 @@ class Equations:
         for symbol in found:
             kind, name = symbol.value
             if kind != "state" and kind in kinds.valued:
+                if kind in kinds.accessories:
+                    raise Error(f"the equations depend on the accessory {name}, which hooks change: make it a "
+                                "parameter")
                 if given.get(name) is None:
                     raise Error(f"the value of '{name}' is missing: give it in the sweep")
                 self._known[symbol] = given[name]
