@@ -38,7 +38,7 @@ def _pair(found: Any, values: Mapping[str, Array], x: Component | None, y: Compo
     grid = [name for name, of in found.start.axes if len(of) > 1]
     if len(grid) == 2 and all(name in found.start.coordinates for name in grid) and (not given or set(given) ==
                                                                                       set(grid)):
-        return (*(given or grid), True)  # type: ignore[return-value]
+        return (given or grid)[0], (given or grid)[1], True
     varying = given or [name for name, of in values.items() if np.ptp(of) > 0][:2]
     if len(varying) < 2 or not all(name in values for name in varying):
         raise Error(f"starts vary in {', '.join(varying) or 'no state'}: a picture of basins is over two states, name "

@@ -15,8 +15,8 @@ import numpy as np
 if TYPE_CHECKING:
     from ..symbolic.types import Array
 
-# A group takes orbits whose features differ by no more than those of its leader do between the halves of its points, nor
-# by more than this part of its size.
+# A group takes orbits whose features differ by no more than those of its leader do between the halves of its points,
+# nor by more than this part of its size.
 _part_of_size = 0.1
 _most_asked = 240  # points of a set
 _most_of_path = 4000
@@ -132,7 +132,8 @@ def grouped(features: Features, ends: Array, tolerance: float, most: int) -> tup
     columns = values.shape[1] // 4
     size = (values[:, 3 * columns:] - values[:, 2 * columns:3 * columns]).max(axis=1)
     group = np.full(len(values), -1)
-    rest, leaders = np.arange(len(values)), []
+    rest = np.arange(len(values))
+    leaders: list[int] = []
     while rest.size and len(leaders) < most:
         i = rest[0]
         radius = 1.5 * tolerance + (min(error[i], _part_of_size * size[i]) if error[i] > tolerance else 0)

@@ -33,7 +33,8 @@ class Hysteresis:
         self.states = states  #: the names of the states that were kept
         #: by direction, "up" and "down", by state: points (values, starts, phases); NaN where an orbit has failed
         self.branches: dict[str, dict[str, Array]] = {
-            direction: {name: points[..., c] for c, name in enumerate(states)} for direction, points in branches.items()}
+            direction: {name: points[..., c] for c, name in enumerate(states)}
+            for direction, points in branches.items()}
 
     def __getitem__(self, key: tuple[str, Component]) -> Array:
         """`result["up", x]`: the points of a state on the way up, (values, starts, phases)."""

@@ -141,7 +141,7 @@ class Motion:
 
 
 def _together(columns: Sequence[Array]) -> Array:
-    """Arrays of equal shape, one for each coordinate, as one whose last axis they are along; in memory each is whole."""
+    """Arrays of equal shape, one for each coordinate, as one with them along its last axis; in memory each is whole."""
     return np.moveaxis(np.stack(columns), 0, -1)
 
 

@@ -25,7 +25,7 @@ diverged, unsettled = -1, -2
 _most_leaders = 512
 _pilots = 64
 _rounds, _longer = 3, 4  # in each, transients are so many times as long
-_more = 16
+_points_of_open = 2400  # of what does not return on a map
 
 
 class Found(NamedTuple):
@@ -202,7 +202,7 @@ class Search:
         open_ = [j for j, one in enumerate(found) if one.kind == aperiodic]
         if open_:
             ends = {name: np.array([found[j].end[name] for j in open_]) for name in found[open_[0]].end}
-            orbits = self.motion.orbits(ends, 0, _more * self.phases)
+            orbits = self.motion.orbits(ends, 0, max(_points_of_open, 2 * self.phases))
             good = self._are_good(orbits)
             for i, j in enumerate(open_):
                 if good[i]:

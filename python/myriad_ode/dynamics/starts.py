@@ -31,8 +31,9 @@ class Starts:
         self.sweep, self.is_random = sweep, draws is not None
         random = {name: value for name, value in sweep.constants.items() if isinstance(value, Random)}
         if bool(random) != self.is_random:
-            raise Error(f"{', '.join(random)} is drawn at random: give the number of draws, as in draws=10_000" if random
-                        else "there are draws, and nothing is drawn: give start={x: my.uniform(-2, 2), ...}")
+            raise Error(f"{', '.join(random)} is drawn at random: give the number of draws, as in draws=10_000"
+                        if random else
+                        "there are draws, and nothing is drawn: give start={x: my.uniform(-2, 2), ...}")
         generator = np.random.default_rng(whole(seed, "seed"))
         values: dict[str, Array] = {}
         for name in sorted(sweep.names):
@@ -82,8 +83,8 @@ def along_one(components: Components, sweep: Sweep | ByComponent) -> tuple[str, 
     if not isinstance(sweep, Sweep):
         sweep = together(by_name(sweep, "the sweep", "{k: np.linspace(-1, 1, 100), B: 0.3}"))
     if len(sweep.coordinates) != 1:
-        raise Error(f"the sweep varies {', '.join(sweep.coordinates) or 'nothing'}: give the values of one parameter, as "
-                    "in {k: np.linspace(-1, 1, 100), B: 0.3}")
+        raise Error(f"the sweep varies {', '.join(sweep.coordinates) or 'nothing'}: give the values of one parameter, "
+                    "as in {k: np.linspace(-1, 1, 100), B: 0.3}")
     (name, (_, values)), = sweep.coordinates.items()
     called = components.component(name)
     if components.place.get(called, ("",))[0] not in ("parameter", *kinds.shared):

@@ -35,8 +35,9 @@ class SteadyState:
     state: dict[str, float]  #: values by name
     eigenvalues: Array  #: of the Jacobian there, the one with the largest real part first, per unit of time
     jacobian: Array  #: derivatives of the equations by the states, a row for each equation
-    kind: str  #: "stable node", "stable focus", "saddle", "saddle-focus", "unstable node", "unstable focus", "centre" or
-    # "non-hyperbolic"
+    #: "stable node", "stable focus", "saddle", "saddle-focus", "unstable node", "unstable focus", "centre", or
+    #: "non-hyperbolic" where an eigenvalue has no real part
+    kind: str
 
     @property
     def is_stable(self) -> bool:
@@ -131,7 +132,7 @@ class Equations:
         arrived, active = np.zeros(len(states), bool), np.arange(len(states))
         for _ in range(iterations):
             here, f = states[active], self(states[active])
-            step = self._steps(here, f)
+            step, solves = self._steps(here, f)
             length, size = np.ones(len(active)), np.linalg.norm(f, axis=1)
             for _ in range(8):
                 with np.errstate(invalid="ignore", over="ignore"):
@@ -141,19 +142,23 @@ class Equations:
                 length[worse] /= 2
             states[active] = here - length[:, None] * step
             small = np.abs(step) <= 1e-9 * np.abs(here) + 1e-12
-            done = small.all(axis=1)
+            done = small.all(axis=1) & solves
             arrived[active[done]] = True
             active = active[~done & np.isfinite(states[active]).all(axis=1)]
             if not active.size:
                 break
         return states, arrived
 
-    def _steps(self, states: Array, f: Array) -> Array:
+    def _steps(self, states: Array, f: Array) -> tuple[Array, Array]:
+        """Newton's steps, by the pseudoinverse of the Jacobian, and whether they solve its equations, which may have
+        no solution where it is singular."""
         matrices = self.jacobian(states)
         well = np.isfinite(matrices).all(axis=(1, 2)) & np.isfinite(f).all(axis=1)
-        steps = np.full_like(states, np.nan)
+        steps, solves = np.full_like(states, np.nan), np.zeros(len(states), bool)
         steps[well] = np.einsum("nij,nj->ni", np.linalg.pinv(matrices[well]), f[well])
-        return steps
+        left = np.einsum("nij,nj->ni", matrices[well], steps[well]) - f[well]
+        solves[well] = np.abs(left).max(axis=1) <= 1e-6 * np.abs(f[well]).max(axis=1)
+        return steps, solves
 
     def steady_state(self, state: Array) -> SteadyState:
         """What a state is at which nothing changes."""
