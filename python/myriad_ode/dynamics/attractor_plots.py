@@ -25,7 +25,7 @@ def legends(found: Any, across: str, up: str) -> dict[int, str]:
 
     def place(one: Any) -> str:
         shown = [one.place([state]) for state in (across, up) if state in one.points]
-        return "\n" + ",\n".join(shown) if names.count(one.name) > 1 else ""
+        return "\n" + ", ".join(shown) if names.count(one.name) > 1 else ""
 
     return {i: f"{one.name}{place(one)}\n{100 * one.share:.3g} %" for i, one in enumerate(found)}
 
@@ -56,6 +56,7 @@ def basins(found: Any, values: Mapping[str, Array], x: Component | None, y: Comp
         order = [name for name, _ in found.start.axes]
         grid = np.ma.asarray(np.moveaxis(labels, (order.index(across), order.index(up)), (0, 1)))
         of = dict(found.start.axes)
+        axes = axes_of(axes, figsize=(7.4, 4.8))
         lost = np.ma.getmaskarray(grid).mean()
         axes = plots.parameter_map(of[across], of[up], grid.reshape(grid.shape[:2]), names=names, xlabel=xlabel,
                                    ylabel=ylabel, axes=axes, **style,

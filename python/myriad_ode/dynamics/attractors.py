@@ -124,10 +124,6 @@ class Attractors(Sequence[Attractor]):
 
     __eq__, __hash__ = object.__eq__, object.__hash__
 
-    def scaled(self, points: Array) -> Array:
-        """Points, states along the last axis, in coordinates in which the extent of what was seen is 1."""
-        return self._scale(points)
-
     @property
     def shares(self) -> Array:
         """The share of all starts that each attractor has: of random starts its basin stability."""

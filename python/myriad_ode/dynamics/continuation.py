@@ -13,7 +13,7 @@ from ..models.components import Components
 from ..sweeps.inputs import real
 from ..sweeps.sweep import Sweep
 from . import attractor_plots
-from .attractors import Attractors, attractors
+from .attractors import Attractor, Attractors, attractors
 from .clusters import PointSet
 from .starts import along_one
 
@@ -99,25 +99,37 @@ def continuation(model: AnyModel, sweep: Sweep | ByComponent, *, start: Sweep | 
 
     model     as of `my.attractors`, as are start, and all further arguments: time, transient, draws ...
     sweep     the values of one parameter or shared component in an array, and one of each other
-    reach     how far an attractor may move from value to value, relative to the extent of the ends of orbits; what is
-              farther away is another one"""
+    reach     how far an attractor may move from value to value, relative to the extent of all attractors at all
+              values; what is farther away is another one"""
     parameter, values, others = along_one(Components(model), sweep)
     if not real(reach, "reach") > 0:
         raise Error(f"reach is {reach}: give a positive number")
     found = [attractors(model, {**others, parameter: value}, start=start, **options) for value in values]
-    known: list[Array] = []  # the last points of each number
+    return Continuation(parameter, values, found, _matched(found, reach))
+
+
+def _points(one: Attractor) -> Array:
+    return np.stack(list(one.points.values()), axis=1)
+
+
+def _matched(found: list[Attractors], reach: float) -> list[list[int]]:
+    """The numbers of the attractors at each value."""
+    every = [_points(one) for at in found for one in at]
+    if not every:
+        return [[] for _ in found]
+    scale = found[0]._scale.spanning(np.concatenate(every))
+    known: list[PointSet] = []  # where each number was last
     numbers = []
     for at in found:
-        numbers.append(_matched(at, known, reach))
-        for one, number in zip(at, numbers[-1]):
-            known[number:number + 1] = [np.stack(list(one.points.values()), axis=1)]
-    return Continuation(parameter, values, found, numbers)
+        now = [PointSet(scale(_points(one)), True) for one in at]
+        numbers.append(_nearest(now, known, reach))
+        for one, number in zip(now, numbers[-1]):
+            known[number:number + 1] = [one]
+    return numbers
 
 
-def _matched(at: Attractors, known: list[Array], reach: float) -> list[int]:
-    """The number of each attractor: that of the known points which are nearest, each taken once, or a new one."""
-    before = [PointSet(at.scaled(points), True) for points in known]
-    now = [PointSet(at.scaled(np.stack(list(one.points.values()), axis=1)), True) for one in at]
+def _nearest(now: list[PointSet], before: list[PointSet], reach: float) -> list[int]:
+    """The number of each set: that of the one before that is nearest, each taken once, or a new one."""
     pairs = sorted((max(a.off(b.some), b.off(a.some)), i, j) for i, a in enumerate(now) for j, b in enumerate(before))
     numbers = [-1] * len(now)
     taken: set[int] = set()
@@ -125,7 +137,7 @@ def _matched(at: Attractors, known: list[Array], reach: float) -> list[int]:
         if distance <= reach and numbers[i] < 0 and j not in taken:
             numbers[i] = j
             taken.add(j)
-    following = len(known)
+    following = len(before)
     for i in range(len(now)):
         if numbers[i] < 0:
             numbers[i], following = following, following + 1

@@ -194,6 +194,13 @@ class Scale:
         least = 1e-6 * self.extent.max()  # what varies less does not vary, as a state on a section
         self.extent = np.maximum(self.extent, least if least > 0 else 1.0)
 
+    def spanning(self, points: Array) -> Scale:
+        """The same for the extent of some points in rows."""
+        made = copy.copy(self)
+        extent = np.ptp(points, axis=0)
+        made.middle, made.extent = points.mean(axis=0), np.where(extent > 0, extent, self.extent)
+        return made
+
     def __call__(self, points: Array) -> Array:
         """Points, states along the last axis, in these coordinates."""
         columns = []
