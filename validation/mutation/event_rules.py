@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Which tests find that a rule of event location (docs/numerics.md, Events) is left out? For each mutation one header
+"""Which tests find that a rule of event location (docs/numerics/events.md) is left out? For each mutation one header
 is changed, and what is compiled with it is built and tested: C++ programs, and the interpreter of the Python package,
 in packs and then in single lanes, as on GPUs.
 
@@ -190,8 +190,7 @@ class Built:
     def make(self, mutation, work, result, flags=""):
         """Builds it with the mutation, as `result`."""
         overlay = work / "overlay/myriad/kernel/event"
-        overlay.mkdir(parents=True, exist_ok=True)
-        shutil.copy(ROOT / HEADERS / mutation[0], overlay)
+        shutil.copytree(ROOT / HEADERS, overlay, dirs_exist_ok=True)
         headers.change(mutation, overlay)
         link = self.link
         for path, line in self.changed.items():
