@@ -123,10 +123,34 @@ def test_cycles_of_a_flow_have_their_periods():
         assert "unstable focus at x = 0, y = 0" in found.notes[0]
 
 
-@pytest.mark.parametrize("c, returns", [(4, 1), (6, 2)])
+def test_fast_parts_of_a_cycle_are_resolved():
+    """Van der Pol's relaxation oscillation for k = 50: its period is (3 - 2 log 2) k + 7.0143 / k^(1/3) + ...
+    (Dorodnitsyn 1947), its largest speed about 4/3 k for a short time, which samples of slices of 10 step over."""
+    model = my.model({x: v, v: k * (1 - x**2) * v - x})
+    found = my.attractors(model, {k: 50}, start={x: np.linspace(-2, 2, 5), v: 1.0}, time=(0, 10), transient=40,
+                          phases=40, method="rodas_5p", **quick)
+    period = (3 - 2 * np.log(2)) * 50 + 7.0143 / 50**(1 / 3)
+    assert len(found) == 1 and found[0].period == pytest.approx(period, rel=0.01)
+    assert found[0].ranges["v"] == pytest.approx((-200 / 3, 200 / 3), rel=0.05)
+
+
+def test_many_attractors_are_shown_in_part():
+    """A ring of ten weakly coupled bistable units has two to the ten of them."""
+    ring = my.states([f"x{i}" for i in range(10)])
+    model = my.model({one: one - one**3 + 0.05 * (ring[i - 1] - one) for i, one in enumerate(ring)})
+    starts = np.random.default_rng(5).choice([-0.7, 0.7], (10, 60))
+    found = my.attractors(model, start=dict(zip(ring, starts)), time=(0, 1), transient=30, phases=8, **quick)
+    assert len(found) == len({tuple(column) for column in starts.T})
+    same = (starts[:, :, None] == starts[:, None]).all(axis=0)
+    assert ((found.labels[:, None] == found.labels) == same).all()
+    assert repr(found).count("\n") == 21 and f"and {len(found) - 20} more, with" in repr(found)
+
+
+@pytest.mark.parametrize("c, returns", [(4, 1), (6, 2), (8.5, 4), (8.7, 8)])
 def test_roessler_cycles_are_the_same_on_a_section_and_without(c, returns):
+    """The period doubles at these values as in textbooks, for a = b = 0.1."""
     equations = {x: -y - z, y: x + 0.1 * y, z: 0.1 + z * (x - k)}
-    options = dict(start={x: np.linspace(-6, -4, 4), y: 0, z: 0}, transient=80, phases=40, **quick)
+    options = dict(start={x: np.linspace(-6, -4, 4), y: 0, z: 0}, transient=100, phases=60, **quick)
     section = my.attractors(my.model(equations, events=my.event(y, direction="falling", stop_after=1)), {k: c},
                             time=(0, np.inf), **options)
     flow = my.attractors(my.model(equations), {k: c}, time=(0, 2), **options)
@@ -219,6 +243,7 @@ def test_pictures_tables_and_datasets():
     (dict(tolerance=2), "tolerance is 2: give a part"),
     (dict(bound=-1), "bound is -1: give a positive number"),
     (dict(time=(0, np.inf)), "no event ends a phase, and time has no end"),
+    (dict(time=(0, -1)), "time goes from 0 to -1: give an end after the begin"),
     (dict(record=[x]), "no option 'record' here: give states="),
     (dict(rtoll=1e-6), "no option 'rtoll'"),
     (dict(states=["q"]), "'q' is no component of the model"),

@@ -31,6 +31,9 @@ if TYPE_CHECKING:
 __all__ = ["Attractor", "Attractors", "attractors"]
 
 
+_most_shown = 20
+
+
 @dataclass(frozen=True, eq=False)
 class Attractor:
     """A set that orbits come to."""
@@ -193,7 +196,10 @@ class Attractors(Sequence[Attractor]):
         return f"{count} attractor{'s' if count != 1 else ''} from {size} starts"
 
     def __repr__(self) -> str:
-        lines = [self._head(), *(f"{i}: {one!r}" for i, one in enumerate(self))]
+        lines = [self._head(), *(f"{i}: {one!r}" for i, one in enumerate(self[:_most_shown]))]
+        if len(self) > _most_shown:
+            share = 100 * self.shares[_most_shown:].sum()
+            lines.append(f"and {len(self) - _most_shown} more, with {share:.4g} % of the starts")
         if self.diverged:
             ended = ", ".join(f"{count} {'beyond all bounds' if name == 'success' else name}"
                               for name, count in self.diverged.items())
@@ -201,9 +207,10 @@ class Attractors(Sequence[Attractor]):
         return "\n".join([*lines, *(f"note: {note}" for note in self.notes)])
 
     def _repr_html_(self) -> str:
-        rows = [(str(i), one.name, one.place(), f"{100 * one.share:.4g} %") for i, one in enumerate(self)]
+        shown = self[:_most_shown]
+        rows = [(str(i), one.name, one.place(), f"{100 * one.share:.4g} %") for i, one in enumerate(shown)]
         return (html.paragraphs([self._head()]) + html.columns(["", "attractor", "where", "starts"], rows)
-                + html.paragraphs(repr(self).splitlines()[1 + len(self):]))
+                + html.paragraphs(repr(self).splitlines()[1 + len(shown):]))
 
 
 def attractors(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: Sweep | ByComponent,

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 fixed_point, cycle, torus, chaos, aperiodic = "fixed point", "cycle", "quasiperiodic", "chaotic", "aperiodic"
 _phases_of_exponents = 1000
 _samples_of_phase = 4 * samples_of_phase  # of a flow, to find its period
+_regular = 0.95  # of the samples are not next to a jump or in a short fast part, as of relaxation oscillations
 
 
 def returns_of(points: Array, tolerance: float) -> int:
@@ -54,10 +55,11 @@ def steady_state_near(equations: Equations, end: Mapping[str, Any], reach: Array
 
 
 class Cycle(NamedTuple):
-    """A cycle of a flow: its period, and points along it, evenly in time."""
+    """A cycle of a flow: its period, and points along it with their times."""
 
     period: float
     points: Array
+    times: Array
 
 
 def cycles_of_flow(motion: Motion, scale: Scale, ends: Mapping[str, Array], phases: int) -> list[Cycle | None]:
@@ -70,7 +72,29 @@ def cycles_of_flow(motion: Motion, scale: Scale, ends: Mapping[str, Array], phas
         run = motion.sampled({name: of[part] for name, of in ends.items()}, times, float(times[-1]))
         points = np.stack([run.samples[name] for name in motion.states], axis=2)
         found += [_cycle(one, scale(one), float(times[1] - times[0])) for one in points]
-    return found
+    return _resolved(motion, ends, found)
+
+
+def _resolved(motion: Motion, ends: Mapping[str, Array], found: list[Cycle | None]) -> list[Cycle | None]:
+    """The same cycles with the ends of steps among their points, of which there are many where a cycle is fast."""
+    chosen = [i for i, one in enumerate(found) if one is not None]
+    if not chosen:
+        return found
+    periods = np.array([one.period for one in found if one is not None])
+    run = motion.at_steps({name: of[chosen] for name, of in ends.items()}, periods)
+    more = np.stack([run.samples[name] for name in motion.states], axis=2)
+    made = list(found)
+    for j, (i, period) in enumerate(zip(chosen, periods)):
+        even = found[i]
+        times = run.t_sample[j] - motion.begin
+        inside = (times > 0) & (times < period)  # not those beyond the samples that there are, which are NaN
+        if even is None or run.failed[j]:
+            continue
+        at = np.concatenate([even.times, times[inside]])
+        points = np.concatenate([even.points, more[j, inside]])
+        order = np.argsort(at, kind="stable")
+        made[i] = Cycle(even.period, points[order], at[order])
+    return made
 
 
 def _cycle(points: Array, scaled: Array, step: float) -> Cycle | None:
@@ -79,7 +103,8 @@ def _cycle(points: Array, scaled: Array, step: float) -> Cycle | None:
     if not np.isfinite(scaled).all():
         return None
     size = float(np.ptp(scaled, axis=0).max())
-    longest = np.sqrt((np.diff(scaled, axis=0)**2).sum(axis=1)).max()
+    steps = np.sqrt((np.diff(scaled, axis=0)**2).sum(axis=1))
+    longest, usual = float(steps.max()), float(np.quantile(steps, _regular))
     off = np.sqrt(((scaled[:len(scaled) // 2] - scaled[0])**2).sum(axis=1))
     least = np.flatnonzero((off[1:-1] <= off[:-2]) & (off[1:-1] < off[2:]) & (off[1:-1] <= 0.02 * size + longest)) + 1
     for k in least[:200]:
@@ -88,9 +113,10 @@ def _cycle(points: Array, scaled: Array, step: float) -> Cycle | None:
             continue
         whole, part = int(lag), lag - int(lag)
         later = (1 - part) * scaled[whole:-1] + part * scaled[whole + 1:]
-        rounding = 0.01 * size + 0.5 * longest**2 / size
-        if np.abs(later - scaled[:len(later)]).max() <= rounding and _returns_last(scaled, lag, rounding):
-            return Cycle(lag * step, points[:whole])
+        rounding = 0.01 * size + 0.5 * usual**2 / size
+        differs = np.abs(later - scaled[:len(later)]).max(axis=1)
+        if np.quantile(differs, _regular) <= rounding and _returns_last(scaled, lag, rounding):
+            return Cycle(lag * step, points[:whole], step * np.arange(whole))
     return None
 
 

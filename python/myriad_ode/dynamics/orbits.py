@@ -65,6 +65,9 @@ class Motion:
             dict(choice).get("stop_after", 0) for choice in (options.get("events") or {}).values())
         #: whether points are those at the ends of phases, else those of a flow
         self.is_map = self._is_map() if stroboscopic is None else bool(stroboscopic)
+        if not self.begin < self.end:
+            raise Error(f"time goes from {self.begin:g} to {self.end:g}: give an end after the begin, as orbits come "
+                        "to an attractor forwards")
         if not self.is_map and not np.isfinite([self.begin, self.end]).all():
             raise Error("no event ends a phase, and time has no end: give a slice of time, as in time=(0, 1), or the "
                         "model an event with stop_after=1")
@@ -128,6 +131,11 @@ class Motion:
         most = {"max_steps": int(min(2e9, 200_000 * slices)), **self.options}["max_steps"]
         return self._run(starts, time=(self.begin, end), samples={"states": self.states, "times": times},
                          max_steps=most)
+
+    def at_steps(self, starts: Mapping[str, Array], lengths: Array) -> Run:
+        """A run for so long with samples at the ends of steps, a few thousand at most."""
+        return self._run(starts, time=(self.begin, self.begin + lengths), max_steps=2_000_000,
+                         samples={"states": self.states, "every": 1, "capacity": 4000})
 
     def _ends(self, run: Run) -> dict[str, Array]:
         kept = {**run.states, **run.accessories}
