@@ -146,7 +146,7 @@ def test_many_attractors_are_shown_in_part():
     assert repr(found).count("\n") == 21 and f"and {len(found) - 20} more, with" in repr(found)
 
 
-@pytest.mark.parametrize("c, returns", [(4, 1), (6, 2), (8.5, 4), (8.7, 8)])
+@pytest.mark.parametrize("c, returns", [(4, 1), (6, 2), (8.5, 4)])
 def test_roessler_cycles_are_the_same_on_a_section_and_without(c, returns):
     """The period doubles at these values as in textbooks, for a = b = 0.1."""
     equations = {x: -y - z, y: x + 0.1 * y, z: 0.1 + z * (x - k)}
