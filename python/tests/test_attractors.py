@@ -123,6 +123,23 @@ def test_cycles_of_a_flow_have_their_periods():
         assert "unstable focus at x = 0, y = 0" in found.notes[0]
 
 
+@pytest.mark.parametrize("slice_", [0.3, 2, 10, 20])
+def test_the_period_of_a_cycle_does_not_depend_on_the_slice(slice_):
+    """Van der Pol's oscillator with k = 1 has the period 6.66328686 (Andersen and Geer, SIAM J. Appl. Math. 42 (1982)
+    678), of which 20 is nearly three."""
+    model = my.model({x: v, v: (1 - x**2) * v - x})
+    found = my.attractors(model, start={x: 1.0, v: 0}, time=(0, slice_), transient=100, phases=60, **quick)
+    assert [one.period for one in found] == pytest.approx([6.66328686], rel=2e-5)
+
+
+@pytest.mark.parametrize("slope, domain", [(1 + 0 * x, (0, 1)), (1 / (1 + x**2), (0, 1)), (1e-3 * x, (0, 1)),
+                                           (0.1 + 0.01 * my.cos(my.time), (0, 2 * np.pi))])
+def test_orbits_that_drift_come_to_no_attractor(slope, domain):
+    found = my.attractors(my.model({x: slope}), start={x: [1.0, 2.0]}, time=domain, transient=30, phases=16, **quick)
+    assert len(found) == 0 and found.labels.tolist() == [-2, -2]
+    assert "2 starts have not come to an attractor" in found.notes[0]
+
+
 def test_fast_parts_of_a_cycle_are_resolved():
     """Van der Pol's relaxation oscillation for k = 50: its period is (3 - 2 log 2) k + 7.0143 / k^(1/3) + ...
     (Dorodnitsyn 1947), its largest speed about 4/3 k for a short time, which samples of slices of 10 step over."""

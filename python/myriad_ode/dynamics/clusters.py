@@ -197,8 +197,10 @@ class PointSet:
         return float(np.quantile(distances(points, self.points), 0.9))
 
     def holds(self, points: Array, tolerance: float) -> bool:
-        """Whether an orbit with these points is on the attractor."""
-        return self.off(points) <= self.within(tolerance)
+        """Whether an orbit with these points is on the attractor: near to it, and not where it has drifted away from."""
+        middle = np.median(points, axis=0)
+        inside = (middle >= self.least - 2 * tolerance) & (middle <= self.most + 2 * tolerance)
+        return bool(inside.all()) and self.off(points) <= self.within(tolerance)
 
     def is_same(self, other: PointSet, tolerance: float) -> bool:
         """Whether two sets are of one attractor. An orbit that is near a cycle goes to it; two cycles, and two samples,

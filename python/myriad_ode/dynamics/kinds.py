@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 fixed_point, cycle, torus, chaos, aperiodic = "fixed point", "cycle", "quasiperiodic", "chaotic", "aperiodic"
 _phases_of_exponents = 1000
 _samples_of_phase = 4 * samples_of_phase  # of a flow, to find its period
+_samples_of_cycle, _periods_of_cycle = 2001, 2.2  # to find its period more closely
 _regular = 0.95  # of the samples are not next to a jump or in a short fast part, as of relaxation oscillations
 
 
@@ -72,48 +73,52 @@ def cycles_of_flow(motion: Motion, scale: Scale, ends: Mapping[str, Array], phas
         run = motion.sampled({name: of[part] for name, of in ends.items()}, times, float(times[-1]))
         points = np.stack([run.samples[name] for name in motion.states], axis=2)
         found += [_cycle(one, scale(one), float(times[1] - times[0])) for one in points]
-    return _resolved(motion, ends, found)
+    places = [i for i, one in enumerate(found) if one is not None]
+    if places:
+        made = _resolved(motion, scale, {name: of[places] for name, of in ends.items()},
+                         [one for one in found if one is not None])
+        for i, one in zip(places, made):
+            found[i] = one
+    return found
 
 
-def _resolved(motion: Motion, ends: Mapping[str, Array], found: list[Cycle | None]) -> list[Cycle | None]:
-    """The same cycles with the ends of steps among their points, of which there are many where a cycle is fast."""
-    chosen = [i for i, one in enumerate(found) if one is not None]
-    if not chosen:
-        return found
-    periods = np.array([one.period for one in found if one is not None])
-    run = motion.at_steps({name: of[chosen] for name, of in ends.items()}, periods)
+def _resolved(motion: Motion, scale: Scale, ends: Mapping[str, Array], found: list[Cycle]) -> list[Cycle]:
+    """The same cycles from as many samples of each, whatever its period is; and with the ends of steps among their
+    points, of which there are many where a cycle is fast."""
+    lengths = _periods_of_cycle * np.array([one.period for one in found])
+    run = motion.evenly(ends, lengths, _samples_of_cycle)
+    for j, points in enumerate(np.stack([run.samples[name] for name in motion.states], axis=2)):
+        found[j] = _cycle(points, scale(points), float(lengths[j]) / (_samples_of_cycle - 1)) or found[j]
+    run = motion.at_steps(ends, np.array([one.period for one in found]))
     more = np.stack([run.samples[name] for name in motion.states], axis=2)
-    made = list(found)
-    for j, (i, period) in enumerate(zip(chosen, periods)):
-        even = found[i]
-        times = run.t_sample[j] - motion.begin
-        inside = (times > 0) & (times < period)  # not those beyond the samples that there are, which are NaN
-        if even is None or run.failed[j]:
-            continue
-        at = np.concatenate([even.times, times[inside]])
-        points = np.concatenate([even.points, more[j, inside]])
-        order = np.argsort(at, kind="stable")
-        made[i] = Cycle(even.period, points[order], at[order])
-    return made
+    for j, (period, points, times) in enumerate(found):
+        at_steps = run.t_sample[j] - motion.begin
+        inside = (at_steps > 0) & (at_steps < period)  # not those beyond the samples that there are, which are NaN
+        if not run.failed[j]:
+            at = np.concatenate([times, at_steps[inside]])
+            order = np.argsort(at, kind="stable")
+            found[j] = Cycle(period, np.concatenate([points, more[j, inside]])[order], at[order])
+    return found
 
 
 def _cycle(points: Array, scaled: Array, step: float) -> Cycle | None:
     """The cycle that a path returns on: after the first time at which it is where it was, and stays with what it was
     before for as long as it is followed."""
-    if not np.isfinite(scaled).all():
+    extent = np.ptp(scaled, axis=0)
+    if not np.isfinite(extent).all() or not extent.any():
         return None
-    size = float(np.ptp(scaled, axis=0).max())
+    scaled = scaled / np.maximum(extent, min(1.0, 0.05 * extent.max()))  # each coordinate counts, peaks and plateaus
     steps = np.sqrt((np.diff(scaled, axis=0)**2).sum(axis=1))
     longest, usual = float(steps.max()), float(np.quantile(steps, _regular))
     off = np.sqrt(((scaled[:len(scaled) // 2] - scaled[0])**2).sum(axis=1))
-    least = np.flatnonzero((off[1:-1] <= off[:-2]) & (off[1:-1] < off[2:]) & (off[1:-1] <= 0.02 * size + longest)) + 1
+    least = np.flatnonzero((off[1:-1] <= off[:-2]) & (off[1:-1] < off[2:]) & (off[1:-1] <= 0.02 + longest)) + 1
     for k in least[:200]:
         lag = _refined(scaled, int(k))
         if lag < 4:
             continue
         whole, part = int(lag), lag - int(lag)
         later = (1 - part) * scaled[whole:-1] + part * scaled[whole + 1:]
-        rounding = 0.01 * size + 0.5 * usual**2 / size
+        rounding = 0.01 + 0.5 * usual**2
         differs = np.abs(later - scaled[:len(later)]).max(axis=1)
         if np.quantile(differs, _regular) <= rounding and _returns_last(scaled, lag, rounding):
             return Cycle(lag * step, points[:whole], step * np.arange(whole))

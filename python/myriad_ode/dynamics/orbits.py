@@ -132,6 +132,11 @@ class Motion:
         return self._run(starts, time=(self.begin, end), samples={"states": self.states, "times": times},
                          max_steps=most)
 
+    def evenly(self, starts: Mapping[str, Array], lengths: Array, count: int) -> Run:
+        """A run for so long with so many samples at equal intervals."""
+        return self._run(starts, time=(self.begin, self.begin + lengths), max_steps=2_000_000,
+                         samples={"states": self.states, "evenly": count})
+
     def at_steps(self, starts: Mapping[str, Array], lengths: Array) -> Run:
         """A run for so long with samples at the ends of steps, a few thousand at most."""
         return self._run(starts, time=(self.begin, self.begin + lengths), max_steps=2_000_000,

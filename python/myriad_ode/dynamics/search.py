@@ -67,8 +67,8 @@ class Search:
         self.scale = self._scale()
         leader = np.full(self.starts.size, diverged)  # the number of a reference
         left, values, transient = np.arange(self.starts.size), dict(self.starts.values), self.transient
-        for turn in range(_rounds):
-            of, values, goes_on = self._turn(left, values, transient, turn == _rounds - 1)
+        for _ in range(_rounds):
+            of, values, goes_on = self._turn(left, values, transient)
             leader[left] = of
             left, values = left[goes_on], {name: each[goes_on] for name, each in values.items()}
             transient = _longer * max(transient, 1)
@@ -76,7 +76,8 @@ class Search:
                 break
         found, label = self._merged(leader)
         if (count := int((label == unsettled).sum())):
-            self.notes.append(f"{_starts(count)} not come to an attractor: give a longer transient=")
+            self.notes.append(f"{_starts(count)} not come to an attractor: give a longer transient=, or angles= "
+                              "if states turn")
         found, label = self._without_saddles(self._with_exponents(found), label)
         return self._ordered(found, label)
 
@@ -100,8 +101,8 @@ class Search:
                 well &= np.isfinite(extent) if name in self.motion.angles else extent <= self.bound
         return well
 
-    def _turn(self, numbers: Array, values: Mapping[str, Array], transient: int,
-              is_last: bool) -> tuple[Array, dict[str, Array], Array]:
+    def _turn(self, numbers: Array, values: Mapping[str, Array],
+              transient: int) -> tuple[Array, dict[str, Array], Array]:
         """Integrates starts with these numbers from where they are. Returns the reference of each, the states at the
         ends, and which have to go on."""
         features, ends, good = self._all(numbers, values, transient)
@@ -126,7 +127,7 @@ class Search:
             near = self._nearest(places[alone], first)
             rest = np.flatnonzero(good)[alone]
             leader[rest], goes_on[rest] = near, near == unsettled
-        return leader, ends, goes_on & (not is_last)
+        return leader, ends, goes_on
 
     def _all(self, numbers: Array, values: Mapping[str, Array],
              transient: int) -> tuple[Features, dict[str, Array], Array]:
@@ -227,14 +228,17 @@ class Search:
     # What the attractors are
 
     def _merged(self, leader: Array) -> tuple[list[Found], Array]:
-        """Attractors, and the label of each start by the number of its reference."""
-        weights = np.array([one.weight for one in self._references])
+        """Attractors, and the label of each start by the number of its reference. What no leader has stayed on is no
+        attractor, as orbits that drift away slowly."""
+        references = self._references
         used = np.unique(leader[leader >= 0])
-        chosen, belongs = merged([self._references[i].set for i in used], weights[used], self.tolerance)
-        of = np.full(len(self._references) + 2, unsettled)
+        chosen, belongs = merged([references[i].set for i in used], np.array([references[i].weight for i in used]),
+                                 self.tolerance)
+        stayed = sorted({belongs[n] for n, i in enumerate(used) if references[i].is_settled})
+        of = np.full(len(references) + 2, unsettled)
         of[diverged] = diverged
-        of[used] = belongs
-        return [self._references[used[c]].found for c in chosen], of[leader]
+        of[used] = _relabelled(belongs, stayed, len(chosen))
+        return [references[used[chosen[n]]].found for n in stayed], of[leader]
 
     def _with_exponents(self, found: list[Found]) -> list[Found]:
         """The same with their largest Lyapunov exponents, of those that neither rest nor return, or of all."""
