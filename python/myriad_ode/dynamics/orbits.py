@@ -15,6 +15,7 @@ from ..models.any_model import AnyModel
 from ..models.components import Components, listed
 from ..models.recorded import RecordedModel
 from ..models.tangents import WithTangents
+from ..solving.core_options import per_state
 from ..solving.gather import ends_of
 from ..solving.options import Options
 from ..solving.solve import solve
@@ -142,6 +143,19 @@ class Motion:
         return self._run(starts, time=(self.begin, self.begin + lengths), max_steps=2_000_000,
                          samples={"states": self.states, "every": 1, "capacity": 4000})
 
+    def least_extents(self, starts: Mapping[str, Array]) -> Array:
+        """A millionth of what each state varies in the first phases of some orbits, as a state on a section varies no
+        more at their ends; or of its tolerance, if that is more."""
+        states = self.components.states
+        atol = np.broadcast_to(per_state(self.options.get("atol", Options.atol), self.components, "atol", len(states)),
+                               len(states))
+        least = 1e-6 * np.array([atol[states.index(name)] for name in self.states])
+        if self.is_map and len(next(iter(starts.values()))):
+            run = self.at_steps(starts, self.phase)
+            within = np.stack([run.samples[name] for name in self.states])
+            least = np.maximum(least, 1e-6 * (np.nanmax(within, axis=(1, 2)) - np.nanmin(within, axis=(1, 2))))
+        return least
+
     def _ends(self, run: Run) -> dict[str, Array]:
         kept = {**run.states, **run.accessories}
         return {name: np.array(values) for name, values in kept.items() if name not in self.components.hidden}
@@ -190,9 +204,10 @@ def counted(value: int, name: str, least: int) -> int:
 
 class Scale:
     """Coordinates in which 1 is the extent of what was seen: of the ends of orbits, and of their motion if that is
-    more than ten times as large. An angle has two, its cosine and sine."""
+    more than ten times as large. What varies by less than `least`, by state, does not vary. An angle has two
+    coordinates, its cosine and sine."""
 
-    def __init__(self, motion: Motion, moving: Array, ends: Array) -> None:
+    def __init__(self, motion: Motion, moving: Array, ends: Array, least: Array) -> None:
         self._angles = [name in motion.angles for name in motion.states]
         self.middle, self.extent = np.zeros((2, len(motion.states)))
         for c, is_angle in enumerate(self._angles):
@@ -204,8 +219,8 @@ class Scale:
             first, middle, last = np.quantile(ends[..., c], (0.01, 0.5, 0.99))
             extent = max(last - first, 0.1 * (high - low), 1e-6 * abs(middle))
             self.middle[c], self.extent[c] = middle, extent
-        least = 1e-6 * self.extent.max()  # what varies less does not vary, as a state on a section
-        self.extent = np.maximum(self.extent, least if least > 0 else 1.0)
+        self.extent = np.maximum(self.extent, least)
+        self.extent[self.extent == 0] = 1.0
 
     def spanning(self, points: Array) -> Scale:
         """The same for the extent of some points in rows."""

@@ -87,9 +87,11 @@ class Search:
         order = np.lexsort([values[name] for name in sorted(values)])
         chosen = order[np.unique(np.linspace(0, len(order) - 1, min(_pilots, len(order))).astype(int))]
         orbits = self.motion.orbits({n: of[chosen] for n, of in values.items()}, 0, self.transient + self.phases)
-        points = orbits.points[self._are_good(orbits)]
+        good = self._are_good(orbits)
+        points, chosen = orbits.points[good], chosen[good]
         first = points.shape[1] * self.transient // (self.transient + self.phases)
-        return Scale(self.motion, points, points[:, first:])
+        return Scale(self.motion, points, points[:, first:],
+                     self.motion.least_extents({n: of[chosen] for n, of in values.items()}))
 
     def _are_good(self, orbits: Orbits) -> Array:
         """Which orbits have neither failed nor diverged."""
