@@ -140,6 +140,18 @@ def test_orbits_that_drift_come_to_no_attractor(slope, domain):
     assert "2 starts have not come to an attractor" in found.notes[0]
 
 
+@pytest.mark.parametrize("size, fast", [(1e-8, 1), (1e8, 1), (1e-8, 1e16)])
+def test_units_of_states_make_no_difference(size, fast):
+    """Two wells at the distance `size` in x, whose speeds are `fast` times as large."""
+    model = my.model({x: v / fast, v: fast * (x - x**3 / size**2) - 0.3 * v})
+    speed = size * fast
+    found = my.attractors(model, start=my.grid({x: size * np.linspace(-2, 2, 5), v: speed * np.linspace(-1, 1, 4)}),
+                          time=(0, 1), transient=100, phases=30, atol={x: 1e-8 * size, v: 1e-8 * speed}, **quick)
+    assert [one.share for one in found] == [0.5, 0.5]
+    assert sorted(one.mean["x"] for one in found) == pytest.approx([-size, size])
+    assert {one.place() for one in found} == {f"x = {-size:.4g}, v = 0", f"x = {size:.4g}, v = 0"}
+
+
 def test_fast_parts_of_a_cycle_are_resolved():
     """Van der Pol's relaxation oscillation for k = 50: its period is (3 - 2 log 2) k + 7.0143 / k^(1/3) + ...
     (Dorodnitsyn 1947), its largest speed about 4/3 k for a short time, which samples of slices of 10 step over."""
@@ -264,6 +276,10 @@ def test_pictures_tables_and_datasets():
     (dict(record=[x]), "no option 'record' here: give states="),
     (dict(rtoll=1e-6), "no option 'rtoll'"),
     (dict(states=["q"]), "'q' is no component of the model"),
+    (dict(states=[]), "states= names no state"),
+    (dict(sweep={k: my.uniform(0, 1)}), "the value of k in the sweep is .*: give a number"),
+    (dict(start={x: my.uniform(-1, 1), v: 0}, draws=4, seed=-1), "seed is -1"),
+    (dict(model=3), "the model is a int: make it by"),
 ])
 def test_wrong_calls_are_refused(call, message):
     with pytest.raises(my.Error, match=message):

@@ -49,11 +49,27 @@ def test_steady_states_of_functions_without_a_rule_are_found_by_differences():
     assert found[1].eigenvalues[0] == pytest.approx(1, abs=1e-3)  # 2 - 1
 
 
+@pytest.mark.parametrize("size", [1e-15, 1.0, 1e8])
+def test_steady_states_are_found_in_any_unit(size):
+    found = my.steady_states(my.model({x: x - x**3 / size**2}), start={x: size * np.array([-2, -0.5, 0.01, 0.5, 2])})
+    assert [one.kind for one in found] == ["stable node", "unstable node", "stable node"]
+    np.testing.assert_allclose([one.state["x"] / size for one in found], [-1, 0, 1], atol=1e-9)
+    assert f"x = {size:.6g}; eigenvalues -2" in repr(found[2]) and "x = 0;" in repr(found[1])
+
+
+@pytest.mark.parametrize("slope", [x**2, -x**3, x**2 - 2 * x + 1, (x - 3)**2 * (x + 1)])
+def test_multiple_roots_have_no_stability_by_eigenvalues(slope):
+    found = my.steady_states(my.model({x: slope}), start={x: [0.5, 4.0]}, iterations=100)
+    assert {one.kind for one in found} == {"non-hyperbolic"}
+
+
 @pytest.mark.parametrize("model, sweep, message", [
     (my.model({x: my.cos(my.time) - x}), {}, "depend on time"),
     (my.model({x: x**2 + 1}), {}, "no start leads to a steady state"),
     (cusp, {}, "the value of 'a' is missing"),
     (cusp, {a: [1, 2]}, "2 values of a: give one"),
+    (cusp, {a: 1, "q": 1}, "'q' is no parameter of the model"),
+    (cusp, {a: "much"}, "'a' is 'much': give a number"),
     (my.model({x: -x, y: x - y}, mass_matrix={y: 0}), {}, "has a mass matrix"),
     (my.model({x: my.accessory("c") - x}, accessories={my.accessory("c"): 1}), {}, "depend on the accessory c"),
 ])
@@ -95,6 +111,11 @@ def test_orbits_that_fail_are_nan_from_there_on():
                            phases=4, interpreted=True)
     assert np.isfinite(result["up", x][:2]).all() and np.isnan(result["up", x][2]).all()
     assert np.isnan(result["down", x]).all()
+    lost = my.hysteresis(my.model({x: a + x**2}), {a: [1.0, 2.0]}, start={x: 0.0}, time=(0, 1), transient=40, phases=4,
+                         interpreted=True)
+    assert np.isnan(lost.interval()).all()
+    with pytest.raises(my.Error, match="no points of y: there are those of x"):
+        lost["up", y]
 
 
 def test_pictures_and_datasets_of_hysteresis():
@@ -114,6 +135,9 @@ def test_pictures_and_datasets_of_hysteresis():
     (dict(sweep=my.grid({a: [0, 1], b: [0, 1]})), "the sweep varies a, b"),
     (dict(sweep={x: [0.0, 1.0]}), "'x' is no parameter of the model"),
     (dict(transient=-1), "transient is -1: give at least 0"),
+    (dict(sweep={a: []}), "the sweep has no values of a"),
+    (dict(start={x: my.uniform(0, 1)}), "x is drawn at random: give NumPy's random numbers"),
+    (dict(model=3), "the model is a int"),
 ])
 def test_wrong_calls_of_hysteresis_are_refused(call, message):
     with pytest.raises(my.Error, match=message):

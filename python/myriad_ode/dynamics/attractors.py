@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -48,6 +48,7 @@ class Attractor:
     share: float  #: of all starts
     error: float  #: the standard error of the share, if starts are random draws; else NaN
     end: dict[str, float]  #: states and accessories of an orbit on it, from which it goes on
+    _least: dict[str, float] = field(repr=False)  # what is less is rounding, by state
 
     @property
     def mean(self) -> dict[str, float]:
@@ -70,7 +71,7 @@ class Attractor:
 
     def place(self, states: Sequence[str] = ()) -> str:
         """Where it is in words, in the ranges of its states, or of some of them."""
-        return ", ".join(_range(name, low, high) for name, (low, high) in self.ranges.items()
+        return ", ".join(_range(name, low, high, self._least[name]) for name, (low, high) in self.ranges.items()
                          if not states or name in states)
 
     def __repr__(self) -> str:
@@ -79,11 +80,10 @@ class Attractor:
         return f"<{self.name}, {self.place()}{exponent}; {share} % of the starts>"
 
 
-def _range(name: str, low: float, high: float) -> str:
+def _range(name: str, low: float, high: float, least: float) -> str:
     """A range in words: a number, if it is no wider than rounding."""
-    least = 1e-12 if high == low else 1e-6
     low, high = (value if abs(value) > least else 0.0 for value in (low, high))
-    if high - low <= 1e-6 * max(abs(low), abs(high)):
+    if high - low <= max(least, 1e-6 * max(abs(low), abs(high))):
         return f"{name} = {low:.4g}"
     return f"{name} from {low:.4g} to {high:.4g}"
 
@@ -104,9 +104,10 @@ class Attractors(Sequence[Attractor]):
         counts, size = np.bincount(label + 2, minlength=len(found) + 2)[2:], label.size
         shares = counts / size
         error = np.sqrt(shares * (1 - shares) / size) if starts.is_random else np.full(len(found), np.nan)
+        least = dict(zip(states, (1e-6 * search.scale.extent).tolist()))
         self._attractors = [
             Attractor(one.kind, one.period, one.returns, self._by_state(states, one.points), one.exponent,
-                      one.steady_state, int(count), float(share), float(off), one.end)
+                      one.steady_state, int(count), float(share), float(off), one.end, least)
             for one, count, share, off in zip(found, counts, shares, error)]
         self.notes: list[str] = search.notes  #: what to know of the result
         codes, of_failed = np.unique(search.status[label == diverged], return_counts=True)

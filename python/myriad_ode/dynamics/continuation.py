@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..base.errors import Error
-from ..models.components import Components
 from ..sweeps.inputs import real
 from ..sweeps.sweep import Sweep
 from . import attractor_plots
@@ -101,7 +100,7 @@ def continuation(model: AnyModel, sweep: Sweep | ByComponent, *, start: Sweep | 
     sweep     the values of one parameter or shared component in an array, and one of each other
     reach     how far an attractor may move from value to value, relative to the extent of all attractors at all
               values; what is farther away is another one"""
-    parameter, values, others = along_one(Components(model), sweep)
+    parameter, values, others = along_one(model, sweep)
     if not real(reach, "reach") > 0:
         raise Error(f"reach is {reach}: give a positive number")
     found = [attractors(model, {**others, parameter: value}, start=start, **options) for value in values]

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..base import plots
 from ..base.errors import Error
-from ..models.components import Components, name_of
+from ..models.components import name_of
 from ..sweeps.sweep import Sweep
 from .orbits import Motion, counted
 from .starts import Starts, along_one
@@ -31,17 +31,24 @@ class Hysteresis:
         self.parameter = parameter  #: the name of what is varied
         self.values = values  #: its values, in ascending order
         self.states = states  #: the names of the states that were kept
-        #: by direction, "up" and "down", by state: points (values, starts, phases); NaN where an orbit has failed
+        #: by direction, "up" and "down", by state: points (values, starts, points); NaN where an orbit has failed
         self.branches: dict[str, dict[str, Array]] = {
             direction: {name: points[..., c] for c, name in enumerate(states)}
             for direction, points in branches.items()}
 
     def __getitem__(self, key: tuple[str, Component]) -> Array:
-        """`result["up", x]`: the points of a state on the way up, (values, starts, phases)."""
+        """`result["up", x]`: the points of a state on the way up, (values, starts, points)."""
         direction, state = key
         if direction not in self.branches:
             raise KeyError(f"there is no way '{direction}': there is {', '.join(self.branches)}")
-        return self.branches[direction][name_of(state)]
+        return self.branches[direction][self._kept(state)]
+
+    def _kept(self, state: Component) -> str:
+        """The name of a state that was kept."""
+        name = name_of(state)
+        if name not in self.states:
+            raise Error(f"there are no points of {name}: there are those of {', '.join(self.states)}")
+        return name
 
     def differs(self, tolerance: float = 0.01) -> Array:
         """Where the way up and the way down have other orbits, for each value and start: where minimum, mean or maximum
@@ -51,7 +58,9 @@ class Hysteresis:
         found = np.zeros(self.branches["up"][self.states[0]].shape[:2], bool)
         for name in self.states:
             up, down = self.branches["up"][name], self.branches["down"][name]
-            extent = np.ptp([np.nanmin([up, down]), np.nanmax([up, down])])
+            seen = np.concatenate([up, down], axis=None)
+            seen = seen[np.isfinite(seen)]
+            extent = np.ptp(seen) if seen.size else 0.0
             for of in (np.min, np.mean, np.max):
                 found |= np.abs(of(up, axis=2) - of(down, axis=2)) > tolerance * extent
         return found
@@ -64,9 +73,7 @@ class Hysteresis:
     def plot(self, y: Component, *, axes: Axes | None = None, **style: Any) -> Any:
         """The points of a state over the parameter, in a colour for each direction. Further arguments go to
         matplotlib's `plot`. Returns the axes."""
-        name = name_of(y)
-        if name not in self.states:
-            raise Error(f"there are no points of {name}: there are those of {', '.join(self.states)}")
+        name = self._kept(y)
         rows = [np.reshape(of[name], (len(self.values), -1)) for of in self.branches.values()]
         words = np.repeat(list(self.branches), len(self.values))
         return plots.bifurcation(np.tile(self.values, len(rows)), np.concatenate(rows), by=words, xlabel=self.parameter,
@@ -110,10 +117,10 @@ def hysteresis(model: AnyModel, sweep: Sweep | ByComponent, *, start: Sweep | By
     Further arguments are those of `solve`: method, rtol, atol, device ..."""
     if carry not in ("both", "up", "down"):
         raise Error(f"carry is {carry!r}: give \"up\", \"down\" or \"both\"")
-    parameter, values, others = along_one(Components(model), sweep)
+    parameter, values, others = along_one(model, sweep)
     values = np.sort(values)
     motion = Motion(model, {**others, parameter: values[0]}, time, states, (), stroboscopic, options)
-    starts = Starts(motion.components, start, None, 0)
+    starts = Starts(motion.components, start, None, 0, "give NumPy's random numbers, in an array")
     counted(transient, "transient", 0)
     counted(phases, "phases", 1)
     branches, ends = {}, dict(starts.values)

@@ -49,10 +49,11 @@ def equations_of(motion: Motion) -> Equations | None:
 def steady_state_near(equations: Equations, end: Mapping[str, Any], reach: Array) -> SteadyState | None:
     """The steady state within reach of the end of an orbit, if Newton's method finds one."""
     state = np.array([float(end[name]) for name in equations.states])
-    found, arrived = equations.newton(state[None], 100)
+    scale = np.where(np.isfinite(reach), reach, np.abs(state))
+    found, arrived = equations.newton(state[None], 100, scale)
     if not arrived[0] or (np.abs(found[0] - state) > reach).any():
         return None
-    return equations.steady_state(found[0])
+    return equations.steady_state(found[0], scale)
 
 
 class Cycle(NamedTuple):

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..base.errors import Error, refuse_options
 from ..models.any_model import AnyModel
-from ..models.components import Components, listed
+from ..models.components import listed
 from ..models.recorded import RecordedModel
 from ..models.tangents import WithTangents
 from ..solving.core_options import per_state
@@ -22,6 +22,7 @@ from ..solving.solve import solve
 from ..sweeps.inputs import real, whole
 from ..symbolic.node import symbols_of
 from ..symbolic.symbols import time
+from .starts import components_of
 
 if TYPE_CHECKING:
     from ..results.run import Run
@@ -53,13 +54,15 @@ class Motion:
     def __init__(self, model: AnyModel, values: Mapping[Any, Any], domain: tuple[Values, Values] | None,
                  states: SomeComponents | None, angles: SomeComponents, stroboscopic: bool | None,
                  options: Mapping[str, Any]) -> None:
+        self.model, self.values, self.components = model, dict(values), components_of(model)
         _refuse(model, options)
-        self.model, self.values, self.components = model, dict(values), Components(model)
         self.begin, self.end = (real(value, f"the {which} of time") for which, value in zip(("begin", "end"),
                                                                                             ends_of(domain)))
         named = self.components.numbers(model.states if states is None else listed(states), "states=", ["state"])[0]
         turning = self.components.numbers(listed(angles), "angles=", ["state"])[0]
         self.states = [model.states[i] for i in sorted({*named, *turning})]  #: that are compared
+        if not self.states:
+            raise Error("states= names no state: name at least one, or leave it out for all")
         self.angles = [model.states[i] for i in turning]
         self.options = dict(options)
         self.has_section = any(getattr(one, "stop_after", 0) for one in model.events) or any(
@@ -173,8 +176,6 @@ def _together(columns: Sequence[Array]) -> Array:
 
 
 def _refuse(model: AnyModel, options: Mapping[str, Any]) -> None:
-    if not isinstance(model, AnyModel):
-        raise Error(f"the model is a {type(model).__name__}: make it by my.model(...)")
     if model.has_noise:
         raise Error("the model has noise, and an orbit with noise comes to no attractor: leave noise= out, or look at "
                     "histograms of a study")
@@ -196,7 +197,7 @@ def wrapped(angles: Array) -> Array:
 
 
 def counted(value: int, name: str, least: int) -> int:
-    """A number of phases, at least so many."""
+    """A whole number, at least so many."""
     if whole(value, name) < least:
         raise Error(f"{name} is {value}: give at least {least}")
     return int(value)

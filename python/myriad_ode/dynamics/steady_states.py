@@ -4,20 +4,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..base import component_kinds as kinds
 from ..base.errors import Error
-from ..models.components import Components
+from ..models.components import Components, name_of, unknown
 from ..models.recorded import RecordedModel
+from ..sweeps.inputs import numbers, real
 from ..symbolic import symbols as sym
 from ..symbolic.derivatives import derivatives
 from ..symbolic.evaluate import evaluate
 from ..symbolic.expression import as_number
 from ..symbolic.node import symbols_of
+from .orbits import counted
 from .starts import Starts, constant_values
 
 if TYPE_CHECKING:
@@ -26,6 +28,8 @@ if TYPE_CHECKING:
     from ..symbolic.types import Array, ByComponent
 
 __all__ = ["SteadyState", "steady_states"]
+
+_rounding = 1e-12  # of the scale of a state
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +42,7 @@ class SteadyState:
     #: "stable node", "stable focus", "saddle", "saddle-focus", "unstable node", "unstable focus", "centre", or
     #: "non-hyperbolic" where an eigenvalue has no real part
     kind: str
+    _least: dict[str, float] = field(repr=False)  # what is less is rounding, by state
 
     @property
     def is_stable(self) -> bool:
@@ -45,8 +50,8 @@ class SteadyState:
         return self.kind.startswith("stable")
 
     def __repr__(self) -> str:
-        least = 1e-12 * max(1.0, *map(abs, self.state.values()))  # what is less is rounding
-        at = ", ".join(f"{name} = {value if abs(value) > least else 0:.6g}" for name, value in self.state.items())
+        at = ", ".join(f"{name} = {value if abs(value) > self._least[name] else 0:.6g}"
+                       for name, value in self.state.items())
         return f"<{self.kind} at {at}; eigenvalues {', '.join(map(_shown, self.eigenvalues))}>"
 
 
@@ -54,11 +59,11 @@ def _shown(value: complex) -> str:
     return f"{value.real:.4g}" if value.imag == 0 else f"{value.real:.4g}{value.imag:+.4g}i"
 
 
-def kind_of(eigenvalues: Array) -> str:
-    """What a steady state with these eigenvalues is called. Node or focus, saddle or saddle-focus: by the leading
-    eigenvalues, those next to the imaginary axis on its sides."""
+def kind_of(eigenvalues: Array, error: Array) -> str:
+    """What a steady state with these eigenvalues is called, whose real parts are known within `error`. Node or focus,
+    saddle or saddle-focus: by the leading eigenvalues, those next to the imaginary axis on its sides."""
     small = 1e-9 * max(np.abs(eigenvalues).max(), 1e-300)
-    inner = eigenvalues[np.abs(eigenvalues.real) <= small]
+    inner = eigenvalues[np.abs(eigenvalues.real) <= np.maximum(small, error)]
     if inner.size:
         return "centre" if inner.size == eigenvalues.size and (np.abs(inner.imag) > small).all() else "non-hyperbolic"
     left, right = eigenvalues[eigenvalues.real < 0], eigenvalues[eigenvalues.real > 0]
@@ -85,7 +90,10 @@ class Equations:
                         "my.attractors")
         self.states, self._symbols = model.states, [sym.symbol("state", name) for name in model.states]
         components = Components(model)
-        given = {components.component(key): np.asarray(value) for key, value in values.items()}
+        given = {components.component(key): numbers(value, name_of(key)) for key, value in values.items()}
+        for name in given:
+            if components.place.get(name, ("",))[0] not in ("parameter", *kinds.shared):
+                raise unknown(name, components.of(["parameter", *kinds.shared]), "parameter of the model")
         given = components.completed(given, np.asarray(0.0))
         self._known = {}
         for symbol in found:
@@ -125,9 +133,9 @@ class Equations:
             made[:, row, i] = value
         return made
 
-    def newton(self, states: Array, iterations: int) -> tuple[Array, Array]:
+    def newton(self, states: Array, iterations: int, scale: Array) -> tuple[Array, Array]:
         """Where Newton's method leads from states in rows, with steps that are halved until the derivatives are
-        smaller; and which of them have arrived."""
+        smaller; and which of them have arrived: within rounding of themselves, or of the scale of each state."""
         states = states.astype(float)
         arrived, active = np.zeros(len(states), bool), np.arange(len(states))
         for _ in range(iterations):
@@ -141,7 +149,7 @@ class Equations:
                     break
                 length[worse] /= 2
             states[active] = here - length[:, None] * step
-            small = np.abs(step) <= 1e-9 * np.abs(here) + 1e-12
+            small = np.abs(step) <= 1e-9 * np.abs(here) + _rounding * scale
             done = small.all(axis=1) & solves
             arrived[active[done]] = True
             active = active[~done & np.isfinite(states[active]).all(axis=1)]
@@ -160,13 +168,22 @@ class Equations:
         solves[well] = np.abs(left).max(axis=1) <= 1e-6 * np.abs(f[well]).max(axis=1)
         return steps, solves
 
-    def steady_state(self, state: Array) -> SteadyState:
-        """What a state is at which nothing changes."""
-        matrix = self.jacobian(state[None])[0]
-        eigenvalues = np.linalg.eigvals(matrix)
-        order = np.lexsort((-eigenvalues.imag, -eigenvalues.real))
-        eigenvalues = eigenvalues[order]
-        return SteadyState(dict(zip(self.states, state.tolist())), eigenvalues, matrix, kind_of(eigenvalues))
+    def steady_state(self, state: Array, scale: Array) -> SteadyState:
+        """What a state is at which nothing changes. Where Newton's method comes to it slowly, an eigenvalue is zero: it
+        is known no closer than it changes in another step, or within the rounding of a double root."""
+        step, _ = self._steps(state[None], self(state[None]))
+        matrix, further = self.jacobian(np.stack([state, state * (1 + 1.5e-8) - step[0]]))
+        eigenvalues, others = _sorted(np.linalg.eigvals(matrix)), np.inf
+        if np.isfinite(further).all():
+            others = _sorted(np.linalg.eigvals(further)).real
+        return SteadyState(dict(zip(self.states, state.tolist())), eigenvalues, matrix,
+                           kind_of(eigenvalues, 3 * np.abs(eigenvalues.real - others)),
+                           dict(zip(self.states, (_rounding * scale).tolist())))
+
+
+def _sorted(eigenvalues: Array) -> Array:
+    """The one with the largest real part first."""
+    return eigenvalues[np.lexsort((-eigenvalues.imag, -eigenvalues.real))]
 
 
 def steady_states(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: Sweep | ByComponent,
@@ -184,17 +201,21 @@ def steady_states(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, 
     tolerance   how far apart two steady states are at least, relative to the largest value of each state
 
     Raises `Error` where no start leads to a steady state."""
+    if not real(tolerance, "tolerance") > 0:
+        raise Error(f"tolerance is {tolerance}: give a positive number, as 1e-6")
     equations = Equations(model, constant_values(sweep, "a call for each value"))
     starts = Starts(Components(model), start, draws, seed)
     rows = np.stack([starts.values[name] for name in model.states], axis=1)
-    found, arrived = equations.newton(rows, iterations)
+    scale = np.abs(rows).max(axis=0)
+    scale[scale == 0] = scale.max() or 1.0
+    found, arrived = equations.newton(rows, counted(iterations, "iterations", 1), scale)
     found = found[arrived]
     if not len(found):
         raise Error("no start leads to a steady state: give other starts, or look whether there is one")
     found = found[np.lexsort(found.T[::-1])]
-    apart = tolerance * np.maximum(np.abs(found).max(axis=0), 1e-9)
+    apart = tolerance * np.maximum(np.abs(found).max(axis=0), 1e-3 * scale)
     kept: list[Array] = []
     for state in found:
         if not any((np.abs(state - other) <= apart).all() for other in kept):
             kept.append(state)
-    return [equations.steady_state(state + 0.0) for state in kept]
+    return [equations.steady_state(state + 0.0, scale) for state in kept]
