@@ -54,6 +54,8 @@ def test_steady_states_are_found_in_any_unit(size):
     found = my.steady_states(my.model({x: x - x**3 / size**2}), start={x: size * np.array([-2, -0.5, 0.01, 0.5, 2])})
     assert [one.kind for one in found] == ["stable node", "unstable node", "stable node"]
     np.testing.assert_allclose([one.state["x"] / size for one in found], [-1, 0, 1], atol=1e-9)
+    spring = my.model({x: size * y, y: x / size - (x / size)**3 - y})  # with starts that do not tell the scale of y
+    assert len(my.steady_states(spring, start={x: size * np.array([-2, -0.5, 0.01, 0.5, 2]), y: 0})) == 3
     assert f"x = {size:.6g}; eigenvalues -2" in repr(found[2]) and "x = 0;" in repr(found[1])
 
 
@@ -173,5 +175,8 @@ def test_a_pitchfork_keeps_one_of_its_branches_and_has_a_new_one():
     matplotlib.use("Agg")
     assert len(found.plot().collections) == 2
     matplotlib.pyplot.close("all")
+    nothing = my.continuation(my.model({x: a + x**2}), {a: [1.0, 2.0]}, start={x: 0.1}, time=(0, 1), interpreted=True)
+    with pytest.raises(my.Error, match="no attractor at any value of a"):
+        nothing.plot()
     with pytest.raises(my.Error, match="reach is 0: give a positive"):
         my.continuation(pitchfork, {a: [0.0, 1.0]}, start={x: 0.1}, time=(0, 1), reach=0)

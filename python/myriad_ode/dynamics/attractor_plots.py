@@ -89,8 +89,10 @@ def _scattered(axes: Any, x: Array, y: Array, labels: Any, names: Mapping[int, s
 
 def shares(found: Any, axes: Axes | None, style: dict[str, Any]) -> Any:
     """Shares of attractors over a parameter, one above the other."""
-    axes = axes_of(axes, figsize=(7, 3.6))
     count = found.shares.shape[1]
+    if not count:
+        raise Error(f"there is no attractor at any value of {found.parameter}, and so no share to show")
+    axes = axes_of(axes, figsize=(7, 3.6))
     names = []
     for number in range(count):
         kinds = list(dict.fromkeys(kind.partition(" of period")[0] for kind in found.kinds(number) if kind))

@@ -197,7 +197,7 @@ class PointSet:
         return float(np.quantile(distances(points, self.points), 0.9))
 
     def holds(self, points: Array, tolerance: float) -> bool:
-        """Whether an orbit with these points is on the attractor: near to it, and not where it has drifted away from."""
+        """Whether an orbit with these points is on the attractor: near to it, and not where it has drifted from."""
         middle = np.median(points, axis=0)
         inside = (middle >= self.least - 2 * tolerance) & (middle <= self.most + 2 * tolerance)
         return bool(inside.all()) and self.off(points) <= self.within(tolerance)

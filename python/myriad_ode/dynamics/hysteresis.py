@@ -10,6 +10,7 @@ import numpy as np
 from ..base import plots
 from ..base.errors import Error
 from ..models.components import name_of
+from ..sweeps.inputs import real
 from ..sweeps.sweep import Sweep
 from .orbits import Motion, counted
 from .starts import Starts, along_one
@@ -62,7 +63,7 @@ class Hysteresis:
             seen = seen[np.isfinite(seen)]
             extent = np.ptp(seen) if seen.size else 0.0
             for of in (np.min, np.mean, np.max):
-                found |= np.abs(of(up, axis=2) - of(down, axis=2)) > tolerance * extent
+                found |= np.abs(of(up, axis=2) - of(down, axis=2)) > real(tolerance, "tolerance") * extent
         return found
 
     def interval(self, tolerance: float = 0.01) -> tuple[float, float]:

@@ -154,7 +154,7 @@ class Motion:
                                len(states))
         least = 1e-6 * np.array([atol[states.index(name)] for name in self.states])
         if self.is_map and len(next(iter(starts.values()))):
-            run = self.at_steps(starts, self.phase)
+            run = self.at_steps(starts, np.asarray(self.phase))
             within = np.stack([run.samples[name] for name in self.states])
             least = np.maximum(least, 1e-6 * (np.nanmax(within, axis=(1, 2)) - np.nanmin(within, axis=(1, 2))))
         return least

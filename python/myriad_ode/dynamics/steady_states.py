@@ -173,11 +173,11 @@ class Equations:
         is known no closer than it changes in another step, or within the rounding of a double root."""
         step, _ = self._steps(state[None], self(state[None]))
         matrix, further = self.jacobian(np.stack([state, state * (1 + 1.5e-8) - step[0]]))
-        eigenvalues, others = _sorted(np.linalg.eigvals(matrix)), np.inf
-        if np.isfinite(further).all():
-            others = _sorted(np.linalg.eigvals(further)).real
+        if not np.isfinite(further).all():
+            further = matrix
+        eigenvalues, others = (_sorted(np.linalg.eigvals(of)) for of in (matrix, further))
         return SteadyState(dict(zip(self.states, state.tolist())), eigenvalues, matrix,
-                           kind_of(eigenvalues, 3 * np.abs(eigenvalues.real - others)),
+                           kind_of(eigenvalues, 3 * np.abs(eigenvalues.real - others.real)),
                            dict(zip(self.states, (_rounding * scale).tolist())))
 
 
@@ -198,7 +198,8 @@ def steady_states(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, 
     start       states from which to begin: as of `my.attractors`
     draws, seed   the number of random starts, if `start` has some, and their seed
     iterations  the most of each start
-    tolerance   how far apart two steady states are at least, relative to the largest value of each state
+    tolerance   how far apart two steady states are at least, relative to the largest value of each state, in
+                starts too
 
     Raises `Error` where no start leads to a steady state."""
     if not real(tolerance, "tolerance") > 0:
@@ -213,7 +214,7 @@ def steady_states(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, 
     if not len(found):
         raise Error("no start leads to a steady state: give other starts, or look whether there is one")
     found = found[np.lexsort(found.T[::-1])]
-    apart = tolerance * np.maximum(np.abs(found).max(axis=0), 1e-3 * scale)
+    apart = tolerance * np.maximum(np.abs(found).max(axis=0), scale)
     kept: list[Array] = []
     for state in found:
         if not any((np.abs(state - other) <= apart).all() for other in kept):
