@@ -53,6 +53,7 @@ class Batched:
         self.n_samples = None if samples is None else self._count(samples)  #: None without samples
         if self.n_samples is not None and any(one is time_symbol for one in self.of):
             raise Error("of= has the time at which the last phase ended, which has no samples: leave out samples=")
+        self._repeated: dict[bool, Any] = {}
         #: of `vjp`; None for forward sensitivities
         self.adjoint = Adjoint(model, self.free, self.of, self._forward.sweep, self._forward.start,
                                self._forward.plain_options(), samples) if adjoint else None
@@ -117,24 +118,45 @@ class Batched:
             found[..., failed] = np.nan
         return found
 
-    def _values(self, run: Run, batch: tuple[int, ...]) -> Array:
-        found = self._stacked((run.t_last if one is time_symbol else run._values_of(str(one)) for one in self.of), run)
-        return found.T.reshape(*batch, *self.shape)
+    def repeated(self, with_jacobian: bool) -> Any:
+        """What computes the results for rows of values, and their derivatives if they are wanted, in the core alone;
+        None if that takes `solve`."""
+        if with_jacobian not in self._repeated:
+            of: list[list[Any]] = [self.of]
+            if with_jacobian:
+                names = ["time" if one is time_symbol else one for one in self.of]
+                of.append([f"{one}_by_{k}" for one in names for k in self.free])
+            self._repeated[with_jacobian] = self._forward.repeated(of, self.n_samples, with_jacobian)
+        return self._repeated[with_jacobian]
+
+    def _solved(self, rows: Array, with_jacobian: bool) -> list[Array]:
+        """The results for rows of values, and their derivatives if they are wanted."""
+        count, by = len(rows), len(self.free)
+        shapes = [self.shape, (*self.shape, by)][:1 + with_jacobian]
+        if (call := self.repeated(with_jacobian)) is not None:
+            made = [np.empty((count, *shape)) for shape in shapes]
+            call(rows, made)
+            return made
+        run = self.run(rows, with_jacobian)
+        found = [self._stacked((run.t_last if one is time_symbol else run._values_of(str(one)) for one in self.of),
+                               run)]
+        if with_jacobian:
+            slopes = self._stacked((run.sensitivity[one, k] for k in self.free for one in self.of), run)
+            found.append(slopes.reshape(by, len(self.of), *slopes.shape[1:]))
+        return [array.T.reshape(count, *shape) for array, shape in zip(found, shapes)]
 
     def __call__(self, values: Values) -> Array:
         """The results for one set of values, or for those of a batch."""
         rows, batch = self._rows(values)
-        return self._values(self.run(rows), batch)
+        return self._solved(rows, False)[0].reshape(*batch, *self.shape)
 
     def with_jacobian(self, values: Values) -> tuple[Array, Array]:
         """The results, and their derivatives by the values, along one more axis behind those of the results. What has
         no derivative is NaN."""
         self.check_derivatives()
         rows, batch = self._rows(values)
-        run = self.run(rows, sensitivities=True)
-        slopes = self._stacked((run.sensitivity[one, k] for k in self.free for one in self.of), run)
-        slopes = slopes.reshape(len(self.free), len(self.of), *slopes.shape[1:])
-        return self._values(run, batch), slopes.T.reshape(*batch, *self.shape, len(self.free))
+        found, slopes = self._solved(rows, True)
+        return found.reshape(*batch, *self.shape), slopes.reshape(*batch, *self.shape, len(self.free))
 
     def vjp(self, values: Values, weights: Values | Callable[[Array], Any]) -> tuple[Array, Array]:
         """The results, and the derivatives by the values of a loss that depends on the results: a product of a vector
@@ -179,6 +201,9 @@ class Batched:
         from .torch_adapter import torch_function
 
         return torch_function(self)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**vars(self), "_repeated": {}}  # which is of this process
 
     def __repr__(self) -> str:
         return f"<myriad_ode.Batched of {self.model!r} by {', '.join(self.free)}>"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""A batched function for JAX, with a rule for its derivatives: a call on the GPU that integrates, where the argument is
-there, and a callback to the host otherwise."""
+"""A batched function for JAX, with rules for its derivatives: a call of the core on a CPU, or on the GPU that integrates,
+where the argument is there, and a callback to Python otherwise."""
 
 from __future__ import annotations
 
@@ -12,8 +12,7 @@ import numpy as np
 
 from ..base.errors import Error
 from ..base.statuses import first_failure
-from ..kernels import compiler
-from . import xla_handler as jax_gpu
+from . import xla_handler
 
 if TYPE_CHECKING:
     from .protocol import FunctionOfValues
@@ -61,17 +60,14 @@ def _product() -> Any:
     return forwards
 
 
-def _may_stay(function: FunctionOfValues, platform: str, theta: Any) -> bool:
-    """Whether programs for the platform integrate where the argument is."""
+def _is_there(platform: str) -> bool:
+    """Whether JAX has devices of a platform."""
     import jax
 
-    if theta.dtype != function.real or theta.size == 0 or function.gpu is None:
-        return False
     try:
-        jax.devices(platform)
-    except RuntimeError:  # the platform is not there
+        return bool(jax.devices(platform))
+    except RuntimeError:
         return False
-    return compiler.known_compiler() is not None
 
 
 def _solved(function: FunctionOfValues, platform: str, with_jacobian: bool) -> Callable[[Any], Any]:
@@ -81,7 +77,7 @@ def _solved(function: FunctionOfValues, platform: str, with_jacobian: bool) -> C
 
     shapes = [function.shape, (*function.shape, len(function.free))][:1 + with_jacobian]
 
-    def on_host(theta: Any) -> Any:
+    def by_python(theta: Any) -> Any:
         def call(rows: Any) -> list[Any]:
             rows = np.asarray(rows)
             found = function.with_jacobian(rows) if with_jacobian else [function(rows)]
@@ -91,17 +87,30 @@ def _solved(function: FunctionOfValues, platform: str, with_jacobian: bool) -> C
         return jax.pure_callback(call, [jax.ShapeDtypeStruct((*theta.shape[:-1], *shape), theta.dtype)
                                         for shape in shapes], theta)
 
+    def on_cpu(theta: Any) -> Any:
+        found = xla_handler.call_on_cpu(function, with_jacobian, theta.reshape(-1, len(function.free)))
+        return [array.reshape(*theta.shape[:-1], *shape) for array, shape in zip(found, shapes)]
+
     def on_gpu(theta: Any) -> Any:
-        *found, status = jax_gpu.call(function, with_jacobian, theta.reshape(-1, len(function.free)))
+        *found, status = xla_handler.call_on_gpu(function, with_jacobian, theta.reshape(-1, len(function.free)),
+                                                 platform)
         marked = [jnp.where(status >= first_failure, jnp.nan, array) for array in found]  # instances are last
         return [array.T.reshape(*theta.shape[:-1], *shape) for array, shape in zip(marked, shapes)]
 
+    def natively(theta: Any) -> dict[str, Callable[[Any], Any]]:
+        """What needs no Python, by platform."""
+        if theta.size == 0 or not xla_handler.is_there():
+            return {}
+        if theta.dtype == function.real and function.gpu is not None and _is_there(platform):
+            return {platform: on_gpu}
+        if theta.dtype in (np.float32, np.float64) and function.repeated(with_jacobian) is not None:
+            return {"cpu": on_cpu}
+        return {}
+
     @jax.jit
     def by_platform(theta: Any) -> Any:
-        if not _may_stay(function, platform, theta):
-            return on_host(theta)
-        jax_gpu.register("CUDA" if platform == "cuda" else platform)
-        return jax.lax.platform_dependent(theta, **{platform: on_gpu}, default=on_host)
+        native = natively(theta)
+        return jax.lax.platform_dependent(theta, **native, default=by_python) if native else by_python(theta)
 
     mapped = jax.custom_batching.custom_vmap(by_platform)
     mapped.def_vmap(lambda size, is_mapped, theta: (mapped(theta), [True] * len(shapes)))
