@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""A batched function for JAX, with rules for its derivatives: a call of the core on a CPU, or on the GPU that integrates,
-where the argument is there, and a callback to Python otherwise."""
+"""A batched function for JAX: a call of the core on a CPU, or on the GPU that integrates, where the argument is there, and
+a callback to Python otherwise."""
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -12,52 +11,10 @@ import numpy as np
 
 from ..base.errors import Error
 from ..base.statuses import first_failure
-from . import xla_handler
+from . import jax_rules, xla_handler
 
 if TYPE_CHECKING:
     from .protocol import FunctionOfValues
-
-
-@functools.cache
-def _product() -> Any:
-    """JAX's primitive for the product of a Jacobian and a vector, in which zero times what does not exist is zero, and
-    so is it in the product with the transposed Jacobian, which reverse mode makes of it."""
-    import jax
-    import jax.numpy as jnp
-    from jax.extend.core import Primitive
-    from jax.interpreters import ad, batching, mlir
-
-    def primitive(name: str, axis: int) -> Any:
-        def product(jacobian: Any, vector: Any) -> Any:
-            vector = jnp.expand_dims(vector, -3 - axis)
-            return jnp.where(vector == 0, 0, jacobian * vector).sum(axis)
-
-        def shape_of(*given: Any) -> Any:
-            made = jax.eval_shape(product, *(jax.ShapeDtypeStruct(one.shape, one.dtype) for one in given))
-            return jax.core.ShapedArray(made.shape, made.dtype)
-
-        def batched(given: Any, axes: Any) -> Any:
-            size = next(one.shape[place] for one, place in zip(given, axes) if place is not None)
-            return made.bind(*(jnp.broadcast_to(one, (size, *one.shape)) if place is None else
-                               jnp.moveaxis(one, place, 0) for one, place in zip(given, axes))), 0
-
-        made = Primitive(name)
-        made.def_impl(jax.jit(product))
-        made.def_abstract_eval(shape_of)
-        mlir.register_lowering(made, mlir.lower_fun(product, multiple_results=False))
-        batching.primitive_batchers[made] = batched
-        return made
-
-    forwards, backwards = primitive("myriad_product", -1), primitive("myriad_transposed_product", -2)
-
-    def transposed_to(other: Any) -> Callable[..., Any]:
-        def rule(weights: Any, jacobian: Any, vector: Any) -> Any:
-            return None, ad.Zero(vector.aval) if type(weights) is ad.Zero else other.bind(jacobian, weights)
-
-        return rule
-
-    ad.primitive_transposes[forwards], ad.primitive_transposes[backwards] = map(transposed_to, (backwards, forwards))
-    return forwards
 
 
 def _is_there(platform: str) -> bool:
@@ -126,32 +83,17 @@ def jax_function(function: FunctionOfValues, platform: str = "cuda") -> Callable
         raise Error("to_jax needs the package jax: `pip install jax`") from None
 
     n_by = len(function.free)
-
     values, values_and_jacobian = (_solved(function, platform, with_jacobian) for with_jacobian in (False, True))
 
     def pulled_back(theta: Any, weights: Any) -> Any:
-        def on_host(rows: Any, of_rows: Any) -> Any:
+        def by_python(rows: Any, of_rows: Any) -> Any:
             return function.vjp(np.asarray(rows), np.asarray(of_rows))[1].astype(theta.dtype)
 
-        return jax.pure_callback(on_host, jax.ShapeDtypeStruct(theta.shape, theta.dtype), theta, weights,
+        return jax.pure_callback(by_python, jax.ShapeDtypeStruct(theta.shape, theta.dtype), theta, weights,
                                  vmap_method="broadcast_all")
 
-    def of_floats(theta: Any) -> Any:
-        return values(theta)[0]
-
-    def pushed_forward(primals: Any, tangents: Any) -> Any:
-        function.check_derivatives()
-        found, jacobian = values_and_jacobian(primals[0])
-        flat = jacobian.reshape(*tangents[0].shape[:-1], -1, n_by)
-        return found, _product().bind(flat, tangents[0]).reshape(found.shape)
-
-    rule: Any
-    if function.adjoint is None:
-        rule = jax.custom_jvp(of_floats)
-        rule.defjvp(pushed_forward)
-    else:
-        rule = jax.custom_vjp(of_floats)
-        rule.defvjp(lambda theta: (of_floats(theta), theta), lambda theta, weights: (pulled_back(theta, weights),))
+    rule = jax_rules.differentiable(lambda theta: values(theta)[0], values_and_jacobian,
+                                    None if function.adjoint is None else pulled_back, function.check_derivatives)
 
     def call(theta: Any) -> Any:
         theta = jnp.asarray(theta)

@@ -26,11 +26,11 @@ _of_solve = ("device", "interpreted", "method", "control", "precision", "sensiti
 def repeated_call(model: AnyModel, given: Sequence[str], results: Sequence[Sequence[Any]], samples: int | None,
                   options: Mapping[str, Any], *, sweep: Mapping[str, Any], start: Mapping[str, Any],
                   free: Sequence[str] | None = None) -> Any:
-    """A call of the core for values of the states and parameters `given`, whose `results` are arrays, each of several
-    states or accessories, or `my.time` for the time at which the last phase ended. `samples`: how many each instance has;
-    None for the values at the end. The others are those of `solve`. None if only `solve` can do it: if it is not for
-    one CPU, if anything else differs from instance to instance or follows from what is given, or if a result is no
-    array of the core's."""
+    """A call of the core for values of the states and parameters `given`. Each of its `results` is an array of several
+    quantities: states, accessories, or `my.time` for the time at which the last phase ended. `samples`: how many an
+    instance has; None for what is there at the end. The other arguments are those of `solve`. Returns None if only
+    `solve` can do it: not on one CPU, if anything else differs between instances or follows from what is given, or if
+    a quantity is no array of the core's."""
     own = {**options}
     left_out = [own.pop(name, None) for name in _left_out]
     if any(value is not None and value is not False for value in left_out):
