@@ -629,17 +629,17 @@ def run_jax(run):
 @pytest.mark.thorough
 def test_jax_programs_on_a_gpu_have_the_results_and_derivatives_of_the_host_in_one_call(run_jax):
     run_jax("""
-from myriad_ode.gradients import batched
+from myriad_ode.gradients import forward
 there, here = on_gpu(), function("cpu").to_jax()
 for theta in sets, sets[0], np.stack([sets, sets]):
     found = there(theta)
     assert found.shape == (*theta.shape[:-1], 4, 2) and close(found, here(theta))
-sizes, usual = [], batched.solve
-batched.solve = lambda *a, **o: (sizes.append(1), usual(*a, **o))[1]
+sizes, usual = [], forward.solve
+forward.solve = lambda *a, **o: (sizes.append(1), usual(*a, **o))[1]
 gradients = jax.jit(jax.vmap(jax.grad(loss(there))))
 found = gradients(sets)
 assert len(sizes) == 1
-batched.solve = usual
+forward.solve = usual
 assert close(found, jax.vmap(jax.grad(loss(here)))(sets))
 assert close(jax.grad(lambda all: jax.vmap(loss(there))(all).sum())(sets), found)
 assert close(jax.vmap(jax.vmap(there))(np.stack([sets, sets]))[1], here(sets))

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""A batched function for JAX: a call of the core on a CPU, or on the GPU that integrates, where the argument is there, and
-a callback to Python otherwise."""
+"""A batched function for JAX: a call of the core on a CPU, or on the GPU that integrates, where the argument is there,
+and a callback to Python otherwise."""
 
 from __future__ import annotations
 

@@ -221,8 +221,7 @@ def call_on_cpu(function: FunctionOfValues, with_jacobian: bool, rows: Any) -> l
     _register(_on_cpu, "cpu")
     shapes = [jax.ShapeDtypeStruct((rows.shape[0], *function.shape, *by), rows.dtype)
               for by in ((), (len(function.free),))[:1 + with_jacobian]]
-    found: list[Any] = jax.ffi.ffi_call(_on_cpu, shapes)(rows, function=np.int64(_kept(function, with_jacobian)))
-    return found
+    return list(jax.ffi.ffi_call(_on_cpu, shapes)(rows, function=np.int64(_kept(function, with_jacobian))))
 
 
 def call_on_gpu(function: FunctionOfValues, with_jacobian: bool, rows: Any, platform: str) -> Sequence[Any]:
