@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Rules of event location (docs/numerics.md) that few models need: tolerances given, and the end of the domain."""
+"""Rules of event location (docs/numerics/events.md) that few models need: tolerances given, the end of the domain."""
 
 import numpy as np
 import pytest

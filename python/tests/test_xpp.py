@@ -183,7 +183,10 @@ def test_a_file_gives_its_name_to_the_model(tmp_path):
 
 
 @pytest.mark.parametrize("line, said", [
-    ("wiener w", "noise"), ("markov z 2", "Markov"), ("y'=delay(x,1)", "delays"), ("bdry x-1", "boundary"),
+    ("wiener w\ny'=w*w", "a sum of Wiener processes"),
+    ("wiener w\ny'=if(w>0)then(1)else(2)", "a sum of Wiener processes"), ("wiener w\ny'=w\ninit y=w", "on noise"),
+    ("wiener w\ny'=w\nglobal 1 {x-1} {x=0}", "no events"), ("wiener 3", "wiener name"),
+    ("wiener x", "a second time"), ("markov z 2", "Markov"), ("y'=delay(x,1)", "delays"), ("bdry x-1", "boundary"),
     ("0=x+y", "algebraic equations"), ("solv y=1", "algebraic equations"), ("x(t+1)=2*x", "a map"),
     ("y(t)=int{exp(-t)#x}", "integral equations"), ("y'=int[.5]{exp(-t)#x}", "integral equations"),
     ("volterra y=1", "integrals over the past"),
@@ -199,6 +202,20 @@ def test_what_is_not_supported_is_refused_with_its_line(line, said):
     with pytest.raises(my.Error) as error:
         my.read_xpp(f"# a comment\nx'=1\n{line}\n")
     assert said in str(error.value) and "line " in str(error.value)
+
+
+def test_what_wiener_names_is_noise_of_the_equations():
+    model = my.read_xpp("wiener w z\npar s=.5, a=2\nx'=1-a*(x-noise)-.25*z\ny'=a*y*(3+w)\nv'=x\nnoise=s*w\n"
+                        "aux twice=2*x\naux rough=x+w\n")
+    x, y, v = my.states("x y v")
+    s, a = my.parameters("s a")
+    by_hand = my.model({x: 1 - a * x, y: 3 * a * y, v: x},
+                       noise={x: {"w": a * s, "z": -0.25}, y: {"w": a * y}, v: {"w": 0}})
+    options = dict(start={"x": 0, "y": 1, "v": 0}, time=(0, 1), paths=4, seed=7, step=2.0**-6, device="cpu")
+    one, other = my.solve(model, **options), my.solve(by_hand, {"s": 0.5, "a": 2.0}, **options)
+    for name in "xyv":
+        np.testing.assert_allclose(one[name], other[name], rtol=1e-13)
+    assert set(model.outputs) == {"twice"}  # what depends on noise has no values
 
 
 def test_a_compiled_model_agrees():

@@ -5,8 +5,8 @@
 //
 // forbid: f64 in integrate_ensemble
 // limit: integrate_ensemble<lorenz, runge_kutta_4> stack 0 spill 0 registers 48
-// limit: integrate_ensemble<bouncer, cash_karp> registers 56 stack 424 spill 128
-// limit: integrate_ensemble<bouncer, dense<tsitouras_5>> registers 80 stack 392 spill 0
+// limit: integrate_ensemble<bouncer, cash_karp> registers 56 stack 440 spill 136
+// limit: integrate_ensemble<bouncer, dense<tsitouras_5>> registers 80 stack 400 spill 0
 // limit: integrate_ensemble<waves, runge_kutta_4> stack 0 spill 0
 // limit: integrate_ensemble<sharing, euler_maruyama> registers 88 stack 0 spill 0
 

@@ -5,7 +5,7 @@
 //
 // limit: integrate_ensemble<lorenz, runge_kutta_4> stack 0 spill 0 registers_within 1.10 of lorenz_by_hand
 // limit: integrate_ensemble<duffing_plain, cash_karp> stack 0 spill 0 registers_within 1.10 of duffing_by_hand
-// limit: integrate_ensemble<duffing, cash_karp> registers 96 stack 816 spill 0
+// limit: integrate_ensemble<duffing, cash_karp> registers 96 stack 832 spill 0
 
 #include <myriad/cuda/kernel.cuh>
 #include <myriad/methods.hpp>

@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Which tests find that a rule of event location (docs/numerics.md, Events) is left out? For each mutation one header
-is changed, and the tests run that are compiled with it: C++ programs of a build folder, Python tests of a package.
+"""Which tests find that a rule of event location (docs/numerics/events.md) is left out? For each mutation one header
+is changed, and what is compiled with it is built and tested: C++ programs, and the interpreter of the Python package,
+in packs and then in single lanes, as on GPUs.
 
-Usage: event_rules.py [--build DIR] [--site DIR] [--only NAME,...] [--jobs N] [--seconds S] [--python PROGRAM]
+Usage: event_rules.py [--build DIR] [--package DIR] [--only NAME,...] [--jobs N] [--seconds S] [--python PROGRAM]
        event_rules.py --check
-`--build` is a folder of CMake's with Ninja in which the programs are built. `--site` holds an installed myriad_ode of
-this tree. `--check` only shows that each text stands in its header exactly once. Exit status 1 if a mutation was not
-found, or a text is not there.
+`--build` is a folder of CMake's with Ninja in which the programs are built, `--package` one in which the package is
+(build/python of scripts/python.sh). `--check` only shows that each text stands in its header exactly once. Exit status
+1 if a mutation was not found, or a text is not there.
 """
 import argparse
 import concurrent.futures
@@ -23,11 +24,8 @@ import headers
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 HEADERS = "include/myriad/kernel/event"
-# In order of their cost: the first failure ends the search.
-TESTS = ["test_event_rules.py",
-         "test_random_events.py::test_a_flat_event_function_is_located_to_the_resolution_of_time",
-         "test_random_events.py::test_a_state_that_an_action_moves_onto_the_surface_of_another_event_does_not_cross_it"]
 PROGRAMS = ["event_test", "metamorphic_test"]
+TESTS = ["test_event_rules.py", "test_metamorphic_events.py", "test_random_events.py"]
 
 # name: (header, text, replacement, the rule that it leaves out)
 MUTATIONS = {
@@ -76,19 +74,21 @@ MUTATIONS = {
     "guesses_trusted": ("redone_step.hpp", "return tries < most_guesses && !is_between(h);", "return true;",
                         "a jump is located by bisection"),
     # Together, each once
-    "alone": ("general_locator.hpp", "redo.target == j || (redo.crossed[j] && (heads || jumps))", "redo.target == j",
+    "alone": ("general_locator.hpp", "redo.target == j || (redo.crossed[j] && (heads || between))", "redo.target == j",
               "functions fire together if their crossings cannot be told apart"),
     "along_without_heading": ("general_locator.hpp", "here[j] && side[j] * heading[j] < R(0)", "here[j]",
                               "what fires along must be on its way across"),
-    "jumps_apart": ("general_locator.hpp", "narrow && side[j] * step.g1[j] > band && !here[j]", "false",
-                    "functions that jump at one instant fire together"),
-    "undecided_left": ("general_locator.hpp", "undecided = undecided || (soon && !here[j]);", "", "the step is redone "
-                       "to where others are together with the first"),
-    "size_decides": ("event_memory.hpp", "if (!(at->tolerance[j] > place.rounding[j]) && is_short) {", "if (false) {",
+    "jumps_apart": ("general_locator.hpp", "narrow && redo.changed[j]", "false",
+                    "functions that change sign within one rounding of time fire together"),
+    "not_within_tolerances": ("event_memory.hpp", "max(place.length, place.first)", "place.length",
+                              "what crosses where another may, by its tolerance, crosses with it"),
+    "size_decides": ("event_memory.hpp", "if (place.length * R(64) <= abs(place.t) + abs(place.h) &&", "if (false &&",
                      "the sign a little ahead decides what is here, not the size"),
-    "zero_at_end_left_out": ("event_location.hpp", "redo.crossed.set(j, crossed[j] || undecided);",
+    "zero_at_end_left_out": ("event_location.hpp", "redo.crossed.set(j, crossed[j] || may_cross);",
                              "redo.crossed.set(j, crossed[j]);", "what is zero at a trial's end may cross along"),
-    "alone_at_start": ("event_location.hpp", "(again ? crossed[j] : along)", "false",
+    "later_forgotten": ("event_location.hpp", "bool may_cross = again && redo.crossed[j];", "bool may_cross = false;",
+                        "what crosses a little later may cross along"),
+    "alone_at_start": ("event_location.hpp", "(again ? redo.changed[j] : along)", "false",
                        "at the start of a step, too, functions fire together"),
     "end_of_phase_forgotten": ("side_tracker.hpp", "own.fresh = own.fresh | which;", "",
                       "a phase keeps that an event fired where it ended"),
@@ -157,80 +157,93 @@ MUTATIONS = {
 
 
 def stale_mutations():
-    """Messages about mutations whose text does not stand in its header exactly once, and tests that are not there."""
-    stale = headers.stale(MUTATIONS, ROOT / HEADERS)
-    for file, _, test in (test.partition("::") for test in TESTS):
-        if test and f"def {test}(" not in (ROOT / "python/tests" / file).read_text():
-            stale.append(f"there is no test {test} in {file}")
-    return stale
+    """Messages about mutations whose text does not stand in its header exactly once."""
+    return headers.stale(MUTATIONS, ROOT / HEADERS)
+
+
+def ninja(build, tool, target):
+    """The lines that one of Ninja's tools prints."""
+    done = subprocess.run(["ninja", "-C", build, "-t", tool, target], capture_output=True, text=True, check=True)
+    return done.stdout.splitlines()
+
+
+def shell(command, folder):
+    done = subprocess.run(command, shell=True, capture_output=True, text=True, cwd=folder)
+    if done.returncode:
+        sys.exit(f"{command}\n{done.stderr[-3000:]}")
+
+
+class Built:
+    """A program or module of a build folder, whose objects are compiled anew with a changed header."""
+
+    def __init__(self, build, target):
+        self.build, self.target = build, target
+        *compilations, self.link = ninja(build, "commands", target)
+        self.changed = {}
+        for line in compilations:
+            made = re.search(r" -o (\S+\.o) ", line)
+            if made and any(HEADERS in source for source in ninja(build, "deps", made[1])):
+                self.changed[made[1]] = re.sub(r" -include \S*cmake_pch.hxx", "", line)
+        if not self.changed:
+            sys.exit(f"{target} is not built in {build}, or without {HEADERS}.")
+
+    def make(self, mutation, work, result, flags=""):
+        """Builds it with the mutation, as `result`."""
+        overlay = work / "overlay/myriad/kernel/event"
+        shutil.copytree(ROOT / HEADERS, overlay, dirs_exist_ok=True)
+        headers.change(mutation, overlay)
+        link = self.link
+        for path, line in self.changed.items():
+            before, compiler, arguments = re.fullmatch(r"((?:\S*ccache )?)(\S+) (.*)", line).groups()
+            made = work / path.replace("/", "_")
+            shell(f"{before}{compiler} -I{work / 'overlay'} {flags} {arguments} -w".replace(f" {path}", f" {made}"),
+                  self.build)
+            link = link.replace(f" {path}", f" {made}")
+        shell(re.sub(r" -o \S+", f" -o {result}", link), self.build)
 
 
 class CompiledPrograms:
-    """C++ test programs of a build folder, whose objects are compiled anew with a changed header."""
+    """C++ test programs."""
+
+    def __init__(self, build):
+        self.programs = {name: Built(build, f"tests/{name}") for name in PROGRAMS}
+
+    def first_failure(self, mutation, work, options):
+        for name, program in self.programs.items():
+            program.make(mutation, work, work / name)
+            done = run([str(work / name)], options, cwd=program.build)
+            if isinstance(done, str) or done.returncode:
+                return f"{name}{f', {done}' if isinstance(done, str) else ''}"
+        return None
+
+
+class Interpreter:
+    """Python tests, whose models are interpreted."""
 
     def __init__(self, build):
         self.build = build
-        self.commands = {}
-        for program in PROGRAMS:
-            *compilations, link = re.sub(r" -include \S*cmake_pch.hxx", "",
-                                         self.ninja("commands", f"tests/{program}")).splitlines()
-            own = {re.search(r" -o (\S+\.o) ", line)[1]: line for line in compilations if f"/{program}.dir/" in line}
-            changed = {path: line for path, line in own.items() if HEADERS in self.ninja("deps", path)}
-            if not changed:
-                sys.exit(f"{program} is not built in {build}, or without {HEADERS}.")
-            self.commands[program] = (changed, link)
-
-    def ninja(self, tool, target):
-        return subprocess.run(["ninja", "-C", self.build, "-t", tool, target], capture_output=True, text=True,
-                              check=True).stdout
+        self.core = Built(build, next(build.glob("_core.*.so")).name)
 
     def first_failure(self, mutation, work, options):
-        overlay = work / "overlay/myriad/kernel/event"
-        overlay.mkdir(parents=True)
-        shutil.copy(ROOT / HEADERS / mutation[0], overlay)
-        headers.change(mutation, overlay)
-        for program, (compilations, link) in self.commands.items():
-            for path, line in compilations.items():
-                before, compiler, arguments = re.fullmatch(r"((?:\S*ccache )?)(\S+) (.*)", line).groups()
-                made = work / path.replace("/", "_")
-                self.shell(f"{before}{compiler} -I{work / 'overlay'} {arguments} -w".replace(f" {path}", f" {made}"))
-                link = link.replace(f" {path}", f" {made}")
-            self.shell(re.sub(r" -o \S+", f" -o {work / program}", link))
-            done = run([str(work / program)], options, cwd=self.build)
-            if isinstance(done, str) or done.returncode:
-                return f"{program}{f', {done}' if isinstance(done, str) else ''}"
+        package = work / "myriad_ode"
+        shutil.copytree(ROOT / "python/myriad_ode", package)
+        shell(f"cmake --install . --prefix {work}", self.build)
+        for lanes, flags in {"in packs": "", "in single lanes": "-DMYRIAD_SCALAR_LANES"}.items():
+            self.core.make(mutation, work, package / self.core.target, flags)
+            for arguments in (["-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "--tb=line",
+                               *(str(ROOT / "python/tests" / test) for test in TESTS)],
+                              [str(ROOT / "python/tests/test_metamorphic_events.py"), "--random", "1000"]):
+                folders = os.pathsep.join(filter(None, [str(work), os.environ.get("PYTHONPATH")]))
+                done = run([options.python, *arguments], options, cwd=work,
+                           env={**os.environ, "PYTHONPATH": folders, "PYTHONDONTWRITEBYTECODE": "1"})
+                if isinstance(done, str):
+                    return f"{lanes}, {done}"
+                if done.returncode:
+                    failed = re.search(r"^(?:FAILED|ERROR) \S*?([^/\s]+::.*)$", done.stdout, re.MULTILINE)
+                    if failed is None and "-m" in arguments:
+                        sys.exit(f"The tests did not run:\n{done.stdout[-3000:]}{done.stderr[-1000:]}")
+                    return f"{lanes}, {failed[1][:200] if failed else 'random cases'}"
         return None
-
-    def shell(self, command):
-        done = subprocess.run(command, shell=True, capture_output=True, text=True, cwd=self.build)
-        if done.returncode:
-            sys.exit(f"{command}\n{done.stderr[-3000:]}")
-
-
-class Package:
-    """Python tests of an installed package, whose models are compiled with a changed header."""
-
-    def __init__(self, site):
-        self.site = site
-
-    def first_failure(self, mutation, work, options):
-        site = work / "site"
-        shutil.copytree(self.site, site, copy_function=os.link)
-        folder = site / "myriad_ode" / HEADERS
-        (folder / mutation[0]).unlink()
-        shutil.copy(ROOT / HEADERS / mutation[0], folder)
-        headers.change(mutation, folder)
-        command = [options.python, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "--tb=line"]
-        command += [str(ROOT / "python/tests" / test) for test in TESTS]
-        folders = os.pathsep.join(filter(None, [str(site), os.environ.get("PYTHONPATH")]))
-        done = run(command, options, cwd=work, env={**os.environ, "PYTHONPATH": folders, "MYRIAD_TEST_COMPILED": "1",
-                                                    "PYTHONDONTWRITEBYTECODE": "1"})
-        if isinstance(done, str) or done.returncode == 0:
-            return done if isinstance(done, str) else None
-        failed = re.search(r"^(?:FAILED|ERROR) \S*?([^/\s]+::.*)$", done.stdout, re.MULTILINE)
-        if failed is None or "the model does not compile" in done.stdout:
-            sys.exit(f"The tests did not run:\n{done.stdout[-3000:]}{done.stderr[-1000:]}")
-        return failed[1][:200]
 
 
 def run(command, options, **how):
@@ -256,11 +269,11 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--check", action="store_true", help="only whether each text stands in its header once")
     parser.add_argument("--build", type=pathlib.Path, help="a build folder with the C++ tests")
-    parser.add_argument("--site", type=pathlib.Path, help="a folder with an installed package")
+    parser.add_argument("--package", type=pathlib.Path, help="a build folder of the Python package")
     parser.add_argument("--only", help="names of mutations")
     parser.add_argument("--jobs", type=int, default=1, help="mutations at a time")
     parser.add_argument("--seconds", type=float, default=1500, help="after which a test's run counts as without end")
-    parser.add_argument("--work", help="a folder for temporary files, on the file system of --site")
+    parser.add_argument("--work", help="a folder for temporary files")
     parser.add_argument("--python", default=sys.executable)
     options = parser.parse_args()
     stale = stale_mutations()
@@ -270,10 +283,10 @@ def main():
         return 0
     names = options.only.split(",") if options.only else list(MUTATIONS)
     unknown = [name for name in names if name not in MUTATIONS]
-    if unknown or not (options.build or options.site):
-        parser.error(f"there is no mutation {unknown[0]}" if unknown else "give --build or --site")
+    if unknown or not (options.build or options.package):
+        parser.error(f"there is no mutation {unknown[0]}" if unknown else "give --build or --package")
     tests = [CompiledPrograms(options.build.resolve())] if options.build else []
-    tests += [Package(options.site.resolve())] if options.site else []
+    tests += [Interpreter(options.package.resolve())] if options.package else []
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         missed = list(pool.map(lambda name: verdict(name, tests, options), names)).count(False)
     print(f"{len(names)} mutations, {missed} not found")

@@ -448,8 +448,8 @@ std::pair<double, double> errors_of_samples(double rate, double maximum_step) {
 
 TEST_CASE("samples of a very stiff solution err by the fourth power of the step, far above the tolerance of 1e-6") {
     const double free = std::numeric_limits<double>::infinity();
-    // As in docs/numerics.md. Ends of steps are accurate, so that steps grow with the rate, and with them the error
-    // inside.
+    // As in docs/numerics/stiff_methods.md. Ends of steps are accurate, so that steps grow with the rate, and with them
+    // the error inside.
     const std::pair<double, double> expected[] = {{1e4, 6e-5}, {1e6, 2e-2}, {1e8, 2e-1}};
     for (const auto& [rate, inside] : expected) {
         INFO("rate " << rate);

@@ -92,7 +92,7 @@ void each(Test test) {
 }  // namespace
 
 TEST_CASE("the largest and smallest value of an oscillation are as good as the steps, not as their ends", "[summary]") {
-    // docs/numerics.md has this.
+    // docs/numerics/dense_output.md has this.
     each([]<class Method> {
         const errors error = swing_errors<Method>(1e-8);
         CHECK(error.extremum <= 2 * error.state);
@@ -112,7 +112,7 @@ TEST_CASE("the largest value at ends of steps is off by the square of a step", "
     double worst = 0;
     for (std::int64_t i = 0; i < e.size(); ++i)
         worst = std::max(worst, 1 - e.samples().state(plain_swing::x).row(i).head(e.samples().stored()[i]).maxCoeff());
-    CHECK(worst > 1e-2);  // docs/numerics.md: 2.5e-2; h^2 / 8 for the steps of 0.5
+    CHECK(worst > 1e-2);  // docs/numerics/dense_output.md: 2.5e-2; h^2 / 8 for the steps of 0.5
     CHECK(worst < 3.2e-2);
 }
 

@@ -218,7 +218,8 @@ private:
         return block;
     }
     /// Whether the local memory of blocks of at most one warp stays in the cache of a multiprocessor. A warp has that
-    /// of all its threads, word by word side by side, however many of them run: docs/numerics.md has what that cost.
+    /// of all its threads, word by word side by side, however many of them run: docs/numerics/stiff_methods.md has what
+    /// that cost.
     bool fits_the_cache(std::int64_t size, std::int64_t block) const {
         if (keeps_steps_in_shared_memory()) return true;  // as closely as one warp does
         const std::int64_t blocks = (size + block - 1) / block;

@@ -11,7 +11,7 @@
 namespace myriad::host::inline MYRIAD_ABI {
 
 /// Adds a note if the growth of tangents within a phase differs so much that the steps' errors, amplified along the
-/// fastest, may be visible in the slowest: from a thousand or so instances. In measurements (docs/numerics.md)
+/// fastest, may be visible in the slowest: from a thousand or so instances. In measurements (docs/numerics/tangents.md)
 /// exponents were right where the product is below the limit, and above it off by ten to a hundred times the product,
 /// if at all: the product uses mean growth, and local growth may exceed it.
 template <class R>

@@ -20,7 +20,7 @@ enum class status : std::uint8_t {
     not_finite,          ///< the right-hand side, an event function or a hook gave a non-finite value
     event_accumulation,  ///< actions of one event accumulated on its surface (Zeno), or stops at one time; t is when
                          ///< the last one was counted: a bouncing ball comes to rest 2 v / (g (1 - e)) later
-                         ///< (docs/numerics.md)
+                         ///< (docs/numerics/events.md)
     singular_jacobian,  ///< a linear solve of an implicit method failed, or no algebraic states satisfy their equations
     invalid_input,      ///< a state, parameter or time was not finite at the start
     queue_overflow,     ///< a hook returned `action::overflow`: no room for an action that is to run later

@@ -17,9 +17,8 @@ struct function_ends {
 };
 
 /// A redone step has arrived once the event function is within this part of its tolerance. Guesses for its length aim
-/// closer, since the cubic is not exact. A tolerance of more than this part of the function's change in the step counts
-/// as that.
-inline constexpr double arrival_part = 0.1, guess_part = 0.01, largest_part = 1.0 / 64;
+/// closer, since the cubic is not exact.
+inline constexpr double arrival_part = 0.1, guess_part = 0.01;
 
 /// The root, 0 < x < 1, of the cubic a + x (b + x (c + x d)), which is positive at 0, or rises from zero there, and is
 /// negative at 1: Newton's method, safeguarded by bisection, until the value is within `close` of zero. Six iterations

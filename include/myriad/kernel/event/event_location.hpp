@@ -55,12 +55,12 @@ struct event_location {
         const bool again = sides.is_locating(i) && redo.target != redo.none;
         MYRIAD_UNROLL
         for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
-            // What is zero at the end of the trial, up to rounding, may cross with the others; one that crosses later
-            // keeps its side.
-            bool undecided = again && redo.crossed[j] && abs(step.g1[j]) <= near.band(j);
-            if constexpr (!Nearness::is_plain)
-                undecided = undecided || (!again && sides.is_asked(j, side[j]) && abs(step.g1[j]) <= near.rounding(j));
-            redo.crossed.set(j, crossed[j] || undecided);
+            bool may_cross = again && redo.crossed[j];
+            if constexpr (!Nearness::is_plain)  // near the end of the first trial, or beyond it
+                may_cross =
+                    may_cross || (!again && sides.is_asked(j, side[j]) && abs(step.g1[j]) <= R(64) * near.rounding(j));
+            redo.crossed.set(j, crossed[j] || may_cross);
+            redo.changed.set(j, redo.crossed[j] && side[j] * step.g1[j] < R(0));
             if (again) continue;
             const R change = abs(step.g1[j] - step.g[j]);
             redo.tolerance[j] = min(args.event[j].tolerance, R(largest_part) * change);
@@ -100,7 +100,7 @@ struct event_location {
         MYRIAD_UNROLL
         for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
             const bool along = scratch.crosses[j] && side[j] * scratch.heading[j] < R(0);
-            const bool happens = redo.target == j || (again ? crossed[j] : along);
+            const bool happens = redo.target == j || (again ? redo.changed[j] : along);
             events.put(j, i, happens, step.g[j]);
             own.at_jump.set(j, happens && own.at_jump[j] && !scratch.crosses[j]);
         }

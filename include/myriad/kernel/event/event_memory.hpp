@@ -76,8 +76,8 @@ struct event_scratch<Model, R, false> {};
 /// Finds the slopes of the event functions along the solution at the end of the step, or at its start, where they have
 /// rounding errors `place.rounding`; their headings there, +1 or -1, in the direction of the step; and which of those
 /// that crossed in the trial before cross at that very point, as far as can be told: those within the tolerance given,
-/// or on their other side as soon as rounding lets them move. The sign then tells, not the size at the point: it is the
-/// same for x and x^3.
+/// and those on their other side as soon as rounding lets them move, or where those within their tolerance may cross.
+/// The sign then tells, not the size at the point: it is the same for x and x^3.
 template <class Model, class R>
 MYRIAD_RARE_FUNCTION void look_around(event_scratch<Model, R>* at, const event_memory<Model, R>* own, bool at_start) {
     const auto& step = at->step;
@@ -95,6 +95,7 @@ MYRIAD_RARE_FUNCTION void look_around(event_scratch<Model, R>* at, const event_m
     at->slope = detail::event_slopes<Model>(place.t, place.y, place.slope, place.p);
     at->crosses.clear();
     at->flat = false;
+    const R most = R(largest_part) * abs(own->redo.whole);
     MYRIAD_ROLLED
     for (at->function = 0; at->function < MYRIAD_LENGTH(n_event<Model>); ++at->function) {
         MYRIAD_OPTIMISATION_BARRIER(at);  // else what it points to occupies registers throughout
@@ -102,12 +103,21 @@ MYRIAD_RARE_FUNCTION void look_around(event_scratch<Model, R>* at, const event_m
         at->heading[j] = at->slope[j] != R(0) ? copysign(R(1), at->slope[j] * place.h) : R(0);
         if (!own->redo.crossed[j]) continue;
         at->flat = at->flat || !detail::tells_heading(at->slope[j]);
+        if (!(at->tolerance[j] > place.rounding[j]) || !(at->side[j] * place.here[j] <= at->tolerance[j])) continue;
+        at->crosses.set(j, true);
+        if (!detail::tells_heading(at->slope[j])) continue;
+        place.first = max(place.first, min(at->tolerance[j] * reciprocal(abs(at->slope[j])), most));
+    }
+    MYRIAD_ROLLED
+    for (at->function = 0; at->function < MYRIAD_LENGTH(n_event<Model>); ++at->function) {
+        MYRIAD_OPTIMISATION_BARRIER(at);  // else what it points to occupies registers throughout
+        const int j = at->function;
+        if (!own->redo.crossed[j] || at->crosses[j]) continue;
         place.length = place.rounding[j] * reciprocal(abs(at->slope[j]));  // in which it moves by its rounding error
         MYRIAD_OPTIMISATION_BARRIER(at);
         R g = place.here[j], bound = max(at->tolerance[j], place.rounding[j]);
-        const bool is_short = place.length * R(64) <= abs(place.t) + abs(place.h) && place.length > R(0);
-        if (!(at->tolerance[j] > place.rounding[j]) && is_short) {
-            const R length = copysign(place.length, place.h);
+        if (place.length * R(64) <= abs(place.t) + abs(place.h) && place.length > R(0)) {
+            const R length = copysign(max(place.length, place.first), place.h);
             MYRIAD_UNROLL
             for (int c = 0; c < MYRIAD_LENGTH(n_state<Model>); ++c)
                 place.there[c] = fma(length, place.slope[c], place.y[c]);
@@ -117,6 +127,7 @@ MYRIAD_RARE_FUNCTION void look_around(event_scratch<Model, R>* at, const event_m
         }
         at->crosses.set(at->function, at->side[at->function] * g <= bound);
     }
+    place.first = R(0);
 }
 /// Finds the headings of functions that `look_around` found without a slope that tells, by the values ahead.
 template <class Model, class R>

@@ -144,9 +144,9 @@ private:
     }
 
     /// Handles a redone step that ended before its crossing: close to it its events fire; else it is lengthened. Other
-    /// functions that crossed in the trial before fire along if their crossings cannot be told from this one: they go
-    /// to their other side, and are within the tolerance given or there as soon as rounding lets them move; or they lie
-    /// within the rounding of time.
+    /// functions that crossed in a trial before fire along if their crossings cannot be told from this one: they go to
+    /// their other side, and are there as `look_around` finds; or they have another sign at the end of a bracket whose
+    /// ends are one, up to rounding.
     MYRIAD_FUNCTION trial_outcome arrive(int i, const ends_of_step& step, const reals& side, const arrival& reached,
                                          fired& events) const {
         auto& e = sides.e;
@@ -182,26 +182,10 @@ private:
                 redo.lengthen(step.h, guess);
             } else {
                 further = abs(reached.gap) <= reached.band && redo.improve(step.h, guess, reached.gap > R(0));
-                MYRIAD_UNROLL
-                for (int j = 0; j < MYRIAD_LENGTH(m);
-                     ++j)  // of those that cross in the shortest trial known to end beyond
-                    if (redo.target != j && !(reached.gap > R(0)) && !here[j]) redo.crossed.set(j, false);
             }
             if (further) {
-                location{sides}.redo_step(i);
-                return trial_outcome::is_redone;
-            }
-        } else if (!narrow && reached.gap >= R(0)) {
-            // Others that have crossed where this one is as close beyond zero cross here too.
-            const R ahead = -(reached.gap + reached.close) * reciprocal(approach);
-            bool undecided = false;
-            MYRIAD_UNROLL
-            for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
-                if (redo.target == j || !redo.crossed[j] || !(side[j] * heading[j] < R(0))) continue;
-                const bool soon = slope[j] == R(0) || abs(step.g1[j]) <= R(2) * abs(slope[j] * ahead);
-                undecided = undecided || (soon && !here[j]);
-            }
-            if (undecided && redo.improve(step.h, step.h + ahead, true)) {
+                // The bracket may end here now, where it is not known which others have crossed.
+                if (!(reached.gap > R(0))) redo.changed.clear();
                 location{sides}.redo_step(i);
                 return trial_outcome::is_redone;
             }
@@ -211,8 +195,8 @@ private:
         for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
             const R band = near.band(j);
             const bool heads = here[j] && side[j] * heading[j] < R(0);
-            const bool jumps = narrow && side[j] * step.g1[j] > band && !here[j];
-            const bool happens = redo.target == j || (redo.crossed[j] && (heads || jumps));
+            const bool between = narrow && redo.changed[j];
+            const bool happens = redo.target == j || (redo.crossed[j] && (heads || between));
             events.put(j, i, happens, step.g1[j]);
             if (!reached.all_left && !timeless && !own.on_jump[j] && abs(middle[j]) > band) e.left.set(j, i, true);
             own.at_jump.set(j, happens && abs(step.g1[j]) > band && !(reached.others && here[j]));

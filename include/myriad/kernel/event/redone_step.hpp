@@ -10,6 +10,9 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
+/// The largest part of an event function's change in the trial that found its crossing that a tolerance may be.
+inline constexpr double largest_part = 1.0 / 64;
+
 /// The location of one instance's event. Lengths are signed, like the step. Few steps need it, so it lies in memory,
 /// not in a GPU thread's registers.
 template <class R, extent events>
@@ -22,12 +25,14 @@ struct redone_step {
     static constexpr std::int32_t none = -1;
 
     R length;          // of the next trial; 0: the event is at the start of the step
+    R whole;           // of the trial that found the crossing
     R before, beyond;  // the bracket: longest length known to end before the event, shortest beyond it; or the start
     R resume;          // the step size to resume with afterwards
     std::int32_t tries;
     std::int32_t target;             // the event to which the step is redone
     bool narrow;                     // `before` and `beyond` are equal up to rounding
-    mask_set<bool, events> crossed;  // the events that crossed in the trial that found the target
+    mask_set<bool, events> crossed;  // the events that crossed in one of the trials, or nearly did
+    mask_set<bool, events> changed;  // those of them whose function has another sign at the end of `beyond`
     vec<R, events> tolerance;        // of event functions in this step
 
     /// No location has been.
@@ -39,6 +44,7 @@ struct redone_step {
     /// A trial of length h ended beyond an event.
     MYRIAD_FUNCTION void begin(R h, R guess, R h_next) {
         resume = h_next;
+        whole = h;
         before = R(0);
         beyond = guess == R(0) ? R(0) : h;
         tries = 0;
@@ -61,7 +67,7 @@ struct redone_step {
         resume = h_next;
         length = turn;
         target = none;
-        crossed.clear();
+        crossed.clear(), changed.clear();
     }
     /// A bound on the distance in time of a jump from where it was located, but for the rounding of t.
     MYRIAD_FUNCTION R error() const {

@@ -4,9 +4,9 @@
 // take 21, 61, 4 and 7. Theirs of the other functions have no branch, and are used where they are as short. Defining
 // MYRIAD_EXACT_FLOAT, for a whole model file, gives CUDA's for all.
 //
-// Largest relative errors (docs/numerics.md has the measurements): 1e-6, of sine and cosine 4e-7 absolutely, for
-// arguments and results that are normal. Results of exp and exp2 below the smallest normal number are zero, as in
-// packs. NaN, infinities, zeros and what lies beyond a function's range give what CUDA's functions give.
+// Largest relative errors (docs/numerics/floating_point.md has the measurements): 1e-6, of sine and cosine 4e-7
+// absolutely, for arguments and results that are normal. Results of exp and exp2 below the smallest normal number are
+// zero, as in packs. NaN, infinities, zeros and what lies beyond a function's range give what CUDA's functions give.
 #pragma once
 
 #include <cmath>

@@ -101,7 +101,7 @@ constexpr int shared_step_bytes_of() {
 /// the state out, with fixed steps of explicit methods, if registers hold the trial step, or the factors beside the
 /// vectors of a solve, and beyond the largest stride. Local memory has room for 32 threads a warp, however many run,
 /// and it is the cache's choice what stays; shared memory has room for those that run, and no more threads run at a
-/// time than it has room for. docs/numerics.md has what that gains.
+/// time than it has room for. docs/numerics/stiff_methods.md has what that gains.
 template <class Method, class Model, class R>
 inline constexpr int shared_step_bytes = shared_step_bytes_of<Method, Model, R>();
 

@@ -15,10 +15,12 @@ from ...base.errors import Error, users_line
 from ...codegen.model import Model
 from ...models.event import Event, event
 from ...symbolic import expression as ex, symbols as sym
+from ...symbolic.derivatives import derivatives
 from ...symbolic.evaluate import evaluate
 from ...symbolic.node import symbols_of
-from ...symbolic.folding import compare, constant, is_constant, value_of
+from ...symbolic.folding import add, compare, constant, is_constant, multiply, subtract, value_of
 from ...symbolic.interpolate import interpolate
+from ...symbolic.rewrite import rebuilt
 from ..deep_stack import deeply
 from .formula import Names, NoFormula, formula
 from .ode_file import Global, Line, OdeFile, is_number
@@ -34,9 +36,10 @@ def read_xpp(source: Path | str, *, name: str | None = None) -> XppModel:
 
     Equations (`x'=`, `dx/dt=`) are states, `par` are parameters, `init` initial values; `aux` and other quantities,
     `!` parameters among them, are outputs of a run by their names. `number` are constants, functions and tables are
-    written into the equations, and `global` are events. Names are those of the file in small letters, as XPPAUT does
-    not tell the letters' size apart; results have those of the file too. `model.time` are the ends of the time domain,
-    `model.settings` all that stands behind `@`, and `model.sets` the values of `set` by name.
+    written into the equations, `global` are events, and what `wiener` names is noise of the equations. Names are those
+    of the file in small letters, as XPPAUT does not tell the letters' size apart; results have those of the file too.
+    `model.time` are the ends of the time domain, `model.settings` all that stands behind `@`, and `model.sets` the
+    values of `set` by name.
 
     Raises `my.Error` with the line for what is not supported: maps, delays, integrals over the past, random
     numbers and Markov processes, algebraic equations, boundary conditions, networks of `special`.
@@ -62,6 +65,14 @@ def _in_line(line: Line, text: str, names: Names) -> Any:
         line.refuse(str(why))
 
 
+def _product(a: Any, b: Any) -> Any:
+    """a b, and zero if one of them is."""
+    return constant(0.0) if any(is_constant(c) and value_of(c) == 0 for c in (a, b)) else multiply(a, b)
+
+
+_sums = {"add": add, "subtract": subtract, "multiply": _product}  # in which noise that is zero leaves nothing
+
+
 class XppModel(Model):
     """A model from an .ode file. `outputs` are expressions by name that a run computes; `time` are the ends of the time
     domain, `settings` what stands behind @ by name, and `sets` values by component of each `set`."""
@@ -71,13 +82,15 @@ class XppModel(Model):
     def __init__(self, file: OdeFile, name: str) -> None:
         parts = file.parts
         self._taken: dict[str, str] = {}
-        self._ids = {*parts.equations, *parts.parameters, *parts.derived, *parts.quantities, *parts.outputs}
+        self._ids = {*parts.equations, *parts.parameters, *parts.derived, *parts.quantities, *parts.outputs,
+                     *parts.processes}
         states = {n: sym.symbol("state", self._component(n, n)) for n in parts.equations}
         parameters = {n: sym.symbol("parameter", self._component(n, n)) for n in parts.parameters}
+        self._processes = [sym.symbol("noise", self._component(n, n)) for n in parts.processes]
         names = Names()
         names.series = [list(states), list(parts.quantities)]
         names.values = {"t": sym.time, "pi": constant(np.pi), **{n: constant(v) for n, v in parts.numbers.items()},
-                        **parameters, **states}
+                        **parameters, **states, **dict(zip(parts.processes, self._processes))}
         names.functions = {n: (arguments, body) for n, (_, arguments, body) in parts.functions.items()}
         for line, table, what in parts.tables:
             names.tables[table] = _table(file, line, table, what, names, self._component(table))
@@ -86,11 +99,17 @@ class XppModel(Model):
                        for n, given in (*parts.derived.items(), *parts.quantities.items())}
         for n in (*parts.derived, *parts.quantities):
             names.find(n)
-        equations = {states[n]: _in_line(line, text, names) for n, (line, text) in parts.equations.items()}
+        noise: dict[Any, dict[Any, Any]] = {}
+        equations = {states[n]: self._slope(line, text, names, noise.setdefault(states[n], {}))
+                     for n, (line, text) in parts.equations.items()}
+        noise = {state: factors for state, factors in noise.items() if factors}
+        if noise and parts.events:
+            parts.events[0].line.refuse("a model with noise has no events yet: its paths are too rough to locate them")
         events = [self._event(one, number, names, states, parameters) for number, one in enumerate(parts.events, 1)]
         name = self._component(re.sub("_+", "_", re.sub(r"\W", "_", name.lower())).strip("_") or "model")
         self._reserved = {*self._taken, *self._ids}
-        super().__init__(equations, events, None, None, None, None, None, None, list(parameters.values()), (), name)
+        super().__init__(equations, events, None, None, None, None, None, None, list(parameters.values()), (), name,
+                         noise=noise)
         self.line, self.hidden = users_line(), frozenset(self.accessories)
         self.defaults: dict[str, Any] = {**self.shared_values}
         for n, symbol in states.items():
@@ -98,8 +117,8 @@ class XppModel(Model):
             if n in parts.initial:
                 line, text = parts.initial.pop(n)
                 value = self.defaults[symbol.value[1]] = _in_line(line, text, names)
-                if any(s in states.values() for s in symbols_of([value])):
-                    line.refuse("an initial value depends on a state")
+                if any(s.value[0] in ("state", "noise") for s in symbols_of([value])):
+                    line.refuse("an initial value depends on a state or on noise")
         for line, _ in parts.initial.values():
             line.refuse("it gives an initial value to what has no equation")
         for n, symbol in parameters.items():
@@ -107,6 +126,7 @@ class XppModel(Model):
         self.outputs = {n: names.values[n] for n in (*parts.derived, *parts.quantities)}
         self.outputs |= {n: _in_line(line, text, names) for n, (line, text) in parts.outputs.items()
                          if n not in states and n not in parameters}
+        self.outputs = {n: value for n, value in self.outputs.items() if not self._is_noisy([value])}
         components = {n: symbol.value[1] for n, symbol in (*states.items(), *parameters.items())}
         self.aliases = {alias: component for n, component in components.items()
                         for alias in (n, file.spelled.get(n, n)) if alias != component}
@@ -126,6 +146,23 @@ class XppModel(Model):
         free = sym.free_name(name, {*self._taken, *(self._ids - {of})})
         self._taken[free] = wanted
         return free
+
+    def _is_noisy(self, expressions: list[Any]) -> bool:
+        """Whether expressions depend on Wiener processes."""
+        return not {*self._processes}.isdisjoint(symbols_of(expressions))
+
+    def _slope(self, line: Line, text: str, names: Names, noise: dict[Any, Any]) -> Any:
+        """The right-hand side of an equation without its noise, and the factors of that, which go to `noise`."""
+        slope = _in_line(line, text, names)
+        if not self._is_noisy([slope]):
+            return slope
+        found = derivatives([slope], self._processes)
+        factors = {} if found is None else {self._processes[i]: factor for i, factor in found[0].items()}
+        if not factors or self._is_noisy(list(factors.values())):
+            line.refuse("noise is a sum of Wiener processes, each times a factor without them")
+        noise |= factors
+        zero = {process: constant(0.0) for process in self._processes}
+        return rebuilt([slope], lambda node: _sums[node.op](*node.args) if node.op in _sums else node, zero)[0]
 
     def _event(self, one: Global, number: int, names: Names, states: dict[str, Any],
                parameters: dict[str, Any]) -> Event:

@@ -43,6 +43,7 @@ class Parts:
     outputs: dict[str, tuple[Line, str]] = field(default_factory=dict)
     functions: dict[str, tuple[Line, list[str], str]] = field(default_factory=dict)
     tables: list[tuple[Line, str, str]] = field(default_factory=list)
+    processes: dict[str, Line] = field(default_factory=dict)
     events: list[Global] = field(default_factory=list)
 
 
@@ -59,7 +60,7 @@ _kinds = {"p": "parameter", "i": "init", "n": "number", "a": "aux", "g": "global
           "m": "markov", "b": "bdry", "o": "options", "v": "volterra"}
 _words = ("params", "parameters", "init", "number", "aux", "auxiliary", "global", "table", "wiener",
           "markov", "bdry", "bndry", "boundary", "options", "volterra", "set", "special", "solve", "solv", "export")
-_refused = {"wiener": "noise is not supported", "markov": "Markov processes are not supported",
+_refused = {"markov": "Markov processes are not supported",
             "bdry": "boundary conditions are not supported", "volterra": "integrals over the past are not supported",
             "special": "networks of `special` are not supported: write the sums out, as by sum(0,n)of(...)",
             "solve": "algebraic equations are not supported", "solv": "algebraic equations are not supported",
@@ -199,7 +200,7 @@ class OdeFile:
         if name in words:
             line.refuse(f"`{name}` has a meaning of its own and names no quantity")
         for known in (parts.equations, parts.parameters, parts.numbers, parts.derived, parts.quantities,
-                      parts.functions):
+                      parts.functions, parts.processes):
             if name in known:
                 line.refuse(f"`{name}` is defined a second time")
         among[name] = value
@@ -230,6 +231,11 @@ class OdeFile:
             self.parts.outputs[found[1]] = (line, found[2])
         elif kind == "global":
             self._global(line, rest)
+        elif kind == "wiener":
+            for name in re.split(r"[\s,]+", rest):
+                if not re.fullmatch(r"[a-z]\w*", name):
+                    line.refuse("processes are written wiener name, name")
+                self._new(line, name, self.parts.processes, line)
         elif kind == "table":
             name, _, what = rest.partition(" ")
             self._new(line, name, self.parts.functions, (line, ["x"], ""))
