@@ -4,11 +4,11 @@
 (python/examples/how_to/posterior.py), with a solution by Myriad and by diffrax, on the CPU.
 
 Both are in double precision, by Tsitouras' method 5(4) with equal tolerances; diffrax's gradients go backwards through
-its steps (its default, RecursiveCheckpointAdjoint). "gradient": `jax.jit(jax.value_and_grad(loss))` of a sum of squares of
-the 14 counts for one set of rates, the least of 1000 calls, in microseconds by the clock.
-The sampler runs for some draws, for as many again, and for twenty times as many, and each run compiles its program
-anew: "first" is the processor time of the first one in seconds, most of it that of XLA's compiler, and "step" that of a
-leapfrog step in microseconds, from the difference of the last two.
+its steps (its default, RecursiveCheckpointAdjoint). "gradient" is the least time by the clock, in microseconds, of 1000
+calls of `jax.jit(jax.value_and_grad(loss))` of a sum of squares of the 14 counts for one set of rates. The sampler runs
+for some draws, for as many again, and for twenty times as many, and each run compiles its program anew: "first" is the
+processor time of the first one in seconds, most of it that of XLA's compiler, and "step" that of a leapfrog step in
+microseconds, from the difference of the last two.
 
 Usage: nuts.py [--draws N] [--without-diffrax]
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The posterior of an epidemic's rates: by NUTS of NumPyro, by emcee's ensemble, and from simulations alone, by rejection
-and by sbi. Packages that are not installed are left out."""
+"""The posterior of an epidemic's rates: by NUTS of NumPyro, by emcee's ensemble, and from simulations alone, by
+rejection and by sbi. Packages that are not installed are left out."""
 
 import importlib.util
 import time

@@ -186,8 +186,9 @@ class Batched:
 
     def to_jax(self) -> Callable[[Any], Any]:
         """The function for JAX arrays, under `jit`, `vmap`, `grad`, `jvp` and `vjp`; a batch by `vmap` is one call of
-        `solve`. The derivatives are along the solution, with its tolerances; there are no second ones. Results have the
-        type of the argument: double precision needs `jax.config.update("jax_enable_x64", True)`. Arrays on the GPU
+        `solve`. The derivatives are along the solution, with its tolerances; second ones are an error. Results have the
+        type of the argument: double precision needs `jax.config.update("jax_enable_x64", True)`. On a CPU programs of
+        XLA's call the core without Python, where no result is an output and there is a C++ compiler. Arrays on the GPU
         that integrates stay there if they have the type of the integration and all of of= are states; others go by the
         host. Needs the package jax. JAX keeps the function for as long as the process runs."""
         from .jax_adapter import jax_function
@@ -219,8 +220,8 @@ def batched(model: AnyModel, *, free: SomeComponents, of: SomeComponents, sweep:
     sweep     the other parameters and shared values, one number each
     start     the other initial states, one number each
     adjoint   whether gradients are computed by an adjoint, whose cost hardly depends on the number of components that
-              they are by: those of `vjp`, and in JAX and PyTorch those of reverse mode, beside which there is no other
-              then
+              they are by: those of `vjp`, and in JAX and PyTorch those of reverse mode, beside which PyTorch has no
+              other then
     options   of `solve`, as time=, samples=, method=, rtol=, device=, sensitivity_control=
 
     The argument has any number of axes before the last, all of which are integrated at once."""
