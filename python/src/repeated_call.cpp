@@ -142,7 +142,7 @@ private:
     const std::vector<std::vector<place>> results_;
 };
 
-// -- Called by programs of XLA's ---------------------------------------------------------------------------------------
+// -- Called by programs of XLA's --------------------------------------------------------------------------------------
 
 /// Calls by their numbers. They are kept for good, as programs do not tell when they are gone.
 struct kept_calls {
@@ -209,7 +209,7 @@ int call_by_number(std::int64_t number, int single, std::int64_t rows, void* val
     return 1;
 }
 
-// -- Called by Python --------------------------------------------------------------------------------------------------
+// -- Called by Python -------------------------------------------------------------------------------------------------
 
 using rows_of_python = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 using result_for_python = nb::ndarray<double, nb::c_contig, nb::device::cpu>;
@@ -239,9 +239,12 @@ void bind(nb::module_& m, const char* name) {
                       std::vector<std::vector<place>>>(),
              "kernel"_a, "first"_a, "options"_a, "device"_a, "given"_a, "results"_a, nb::keep_alive<1, 2>(),
              nb::keep_alive<1, 3>())
-        .def("__call__", [](const call& c, const rows_of_python& rows,
-                            const std::vector<result_for_python>& results) { call_from_python(c, rows, results); },
-             "rows"_a, "results"_a)
+        .def(
+            "__call__",
+            [](const call& c, const rows_of_python& rows, const std::vector<result_for_python>& results) {
+                call_from_python(c, rows, results);
+            },
+            "rows"_a, "results"_a)
         .def("keep", [](nb::handle self) {
             self.inc_ref();
             return kept_calls::here().add(nb::cast<const call&>(self));

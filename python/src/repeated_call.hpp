@@ -7,7 +7,7 @@
 
 namespace myriad::python {
 
-/// Adds RepeatedCall64 and RepeatedCall32 to the module, and `repeated_call`, the address of what handlers of XLA's call.
+/// Adds RepeatedCall64 and RepeatedCall32 to the module, and `repeated_call`, the address of what XLA's handlers call.
 void bind_repeated_call(nanobind::module_& m);
 
 }  // namespace myriad::python
