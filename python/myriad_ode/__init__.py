@@ -11,6 +11,10 @@ from .base import plots as plots
 from .base.errors import Error as Error
 from .base.statuses import status_names as status_names
 from .codegen.model import *  # noqa: F403
+from .dynamics.attractors import *  # noqa: F403
+from .dynamics.continuation import *  # noqa: F403
+from .dynamics.hysteresis import *  # noqa: F403
+from .dynamics.steady_states import *  # noqa: F403
 from .formats.petab.problem import PetabProblem as PetabProblem, read_petab as read_petab
 from .formats.sbml.model import SbmlModel as SbmlModel, read_antimony as read_antimony, read_sbml as read_sbml
 from .formats.xpp.model import XppModel as XppModel, read_xpp as read_xpp
@@ -52,11 +56,12 @@ _public = ["CppModel", "Damage", "Error", "EventChoice", "Interrupted", "Options
            "Run", "SampleChoice", "SbmlModel", "Study", "StudyResult", "XppModel", "cache", "controls", "designs",
            "load", "methods", "open_study", "plots", "read_antimony", "read_petab", "read_sbml", "read_xpp", "reduce",
            "solve", "status_names", "study", "verify",
-           *(name for part in ("codegen.model", "gradients.batched", "inference.fitting", "inference.least_squares",
-                               "models.event", "models.sensitivities", "models.tangents", "models.trigger",
-                               "models.units", "results.exponents", "results.sensitivities", "sweeps.sweep",
-                               "symbolic.axes", "symbolic.expression", "symbolic.functions", "symbolic.interpolate",
-                               "symbolic.symbols", "symbolic.table")
+           *(name for part in ("codegen.model", "dynamics.attractors", "dynamics.continuation", "dynamics.hysteresis",
+                               "dynamics.steady_states", "gradients.batched", "inference.fitting",
+                               "inference.least_squares", "models.event", "models.sensitivities", "models.tangents",
+                               "models.trigger", "models.units", "results.exponents", "results.sensitivities",
+                               "sweeps.sweep", "symbolic.axes", "symbolic.expression", "symbolic.functions",
+                               "symbolic.interpolate", "symbolic.symbols", "symbolic.table")
              for name in _sys.modules[f"{__name__}.{part}"].__all__)]
 # What `from myriad_ode import *` brings: nothing that has the name of a function of Python's, such as abs.
 __all__ = [name for name in _public if not hasattr(_builtins, name)]

@@ -164,3 +164,10 @@ def test_a_touch_is_found_where_the_cubic_through_a_long_step_is_too_coarse():
     run = solved({x: v, v: -x}, my.event(x - (1 - 1e-8), do={n: n + 1}), {n: 0}, size=1, start={x: 0.0, v: 1.0},
                  time=(0, 3), method="tsitouras_5", sub_samples=2, rtol=1e-7, atol=1e-7)
     assert run[n][0] == 2
+
+
+def test_what_crosses_within_the_tolerance_of_another_event_fires_with_it():
+    events = [my.event(x, direction="falling", do={x: 1.0, n: n + 1}, tolerance=1e-6),
+              my.event(x + 5e-7, direction="falling", do={k: k + 1}, tolerance=1e-9)]
+    run = solved({x: -1.0}, events, {n: 0, k: 0}, size=1, start={x: 1.0}, time=(0, 10.5))
+    assert run[n][0] == run[k][0] == 10

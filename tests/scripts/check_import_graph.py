@@ -12,8 +12,8 @@ import sys
 from check_include_graph import find_cycle
 
 # From the bottom: each may import those before it.
-LAYERS = ("base", "symbolic", "models", "codegen", "kernels", "sweeps", "results", "solving", "studies", "gradients",
-          "inference", "formats")
+LAYERS = ("base", "symbolic", "models", "codegen", "kernels", "sweeps", "results", "solving", "studies", "dynamics",
+          "gradients", "inference", "formats")
 COMPILED = "_core"  # the extension module, which everything may import
 
 

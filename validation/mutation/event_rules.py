@@ -24,7 +24,7 @@ import headers
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 HEADERS = "include/myriad/kernel/event"
-PROGRAMS = ["event_test", "metamorphic_test"]
+PROGRAMS = ["parts_test", "event_test", "metamorphic_test"]
 TESTS = ["test_event_rules.py", "test_metamorphic_events.py", "test_random_events.py"]
 
 # name: (header, text, replacement, the rule that it leaves out)
