@@ -197,7 +197,7 @@ int call_by_number(std::int64_t number, int single, std::int64_t rows, void* val
         call.run(rows, {values, single != 0}, to, watch);
         return 0;
     } catch (const interruption&) {
-        said = "interrupted";
+        said = "the call was interrupted";
     } catch (const error& e) {
         said = in_words_of_python(e, events != nullptr ? *events : std::vector<std::string>{});
     } catch (const std::exception& e) {

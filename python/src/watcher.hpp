@@ -18,6 +18,13 @@ namespace nb = nanobind;
 class watcher {
 public:
     explicit watcher(nb::handle function) : function_(function) {}
+    watcher(const watcher&) = delete;
+    watcher& operator=(const watcher&) = delete;
+    ~watcher() {
+        if (!failure) return;
+        const nb::gil_scoped_acquire locked;
+        failure.reset();
+    }
 
     /// Throws `interruption` once Python has raised an exception, which is kept.
     void operator()(std::int64_t done, std::int64_t total) {

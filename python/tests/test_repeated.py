@@ -2,7 +2,11 @@
 """Functions of arrays by the core alone have what `solve` has, to the last bit, and go by `solve` where they must."""
 
 import concurrent.futures
+import os
 import pickle
+import signal
+import threading
+import time
 
 import numpy as np
 import pytest
@@ -103,3 +107,24 @@ def test_a_function_that_was_called_pickles():
     expected = function(sets)
     again = pickle.loads(pickle.dumps(function))
     np.testing.assert_array_equal(again(sets), expected)
+
+
+@pytest.mark.parametrize("in_jax", [False, True])
+def test_an_interrupt_ends_a_function_by_the_core_alone(in_jax):
+    many = np.linspace(100, 200, 4000)[:, None]
+    function = my.batched(spring, free=k, of=x, sweep={B: 0}, start={x: 1, v: 0}, time=(0, 1e5),
+                          max_steps=1_000_000_000, interpreted=True)
+    assert function.repeated(False) is not None
+    call, raised = function, KeyboardInterrupt
+    if in_jax:
+        jax = pytest.importorskip("jax")
+        raised = jax.errors.JaxRuntimeError
+        with jax.enable_x64(True):
+            program = jax.jit(function.to_jax()).lower(many).compile()
+        call = lambda rows: jax.block_until_ready(program(rows))  # noqa: E731
+    began = time.perf_counter()
+    threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+    with pytest.raises(raised, match="the call was interrupted" if in_jax else ""):
+        call(many)
+    assert time.perf_counter() - began < 8
+    assert np.isfinite(function([[1e-9]])).all()  # and the next one works
