@@ -3,7 +3,6 @@
 // and shapes before it calls.
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstdint>
 #include <set>
 #include <sstream>
@@ -32,44 +31,19 @@
 #include "myriad/kernel/stepper/sparse_lu.hpp"
 #include "myriad/version.hpp"
 #include "option_bindings.hpp"
+#include "repeated_call.hpp"
 #include "resident.hpp"
 #include "run.hpp"
 #include "statement_caster.hpp"
 #include "study.hpp"
 #include "threads.hpp"
+#include "watcher.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
 
 namespace myriad::python {
 namespace {
-
-/// Calls Python's progress function, and looks for signals, a few times a second.
-class watcher {
-public:
-    explicit watcher(nb::handle function) : function_(function) {}
-
-    /// Throws `interruption` once Python has raised an exception, which is kept.
-    void operator()(std::int64_t done, std::int64_t total) {
-        const auto now = std::chrono::steady_clock::now();
-        if (done < total && now - last_ < std::chrono::milliseconds{50}) return;
-        last_ = now;
-        const nb::gil_scoped_acquire locked;
-        try {
-            if (PyErr_CheckSignals() != 0) throw nb::python_error();
-            if (!function_.is_none()) function_(done, total);
-        } catch (nb::python_error& raised) {
-            failure = nb::borrow(raised.value());
-            throw interruption{};
-        }
-    }
-
-    nb::object failure;
-
-private:
-    nb::handle function_;
-    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 /// The report, and the exception that ended the call early or None.
 template <class R>
@@ -317,6 +291,7 @@ NB_MODULE(_core, m) {
     bind_options(m);
     bind_precision<double>(m, "Ensemble64", "Report64");
     bind_precision<float>(m, "Ensemble32", "Report32");
+    bind_repeated_call(m);
     bind_study(m);
     bind_compile(m);
     known = PyDict_Copy(m.attr("__dict__").ptr());

@@ -76,7 +76,11 @@ private:
 
 template <class R>
 ensemble<R>::ensemble(const detail::model_numbers& of, component_names names, std::int64_t size)
-    : shape(std::make_shared<named_shape>(of, std::move(names))), data(kept_memory<R>::all().take(*shape, size)) {}
+    : ensemble(std::make_shared<named_shape>(of, std::move(names)), size) {}
+
+template <class R>
+ensemble<R>::ensemble(std::shared_ptr<named_shape> of, std::int64_t size)
+    : shape(std::move(of)), data(kept_memory<R>::all().take(*shape, size)) {}
 
 template <class R>
 ensemble<R>::~ensemble() {

@@ -94,6 +94,8 @@ class resident;
 template <class R>
 struct ensemble {
     ensemble(const detail::model_numbers& of, component_names names, std::int64_t size);
+    /// Of a shape that several ensembles have.
+    ensemble(std::shared_ptr<named_shape> of, std::int64_t size);
     ensemble(const ensemble&) = delete;
     ensemble& operator=(const ensemble&) = delete;
     ~ensemble();

@@ -21,18 +21,26 @@ namespace {
 
 constexpr std::size_t usual_stack = std::size_t{8} << 20;
 
-/// Unused bytes of the calling thread's stack; SIZE_MAX if the system does not tell.
-std::size_t stack_left() {
+/// Where the calling thread's stack ends; 0 if the system does not tell.
+std::uintptr_t end_of_stack() {
     pthread_attr_t attributes;
-    if (pthread_getattr_np(pthread_self(), &attributes) != 0) return SIZE_MAX;
+    if (pthread_getattr_np(pthread_self(), &attributes) != 0) return 0;
     void* lowest = nullptr;
     std::size_t size = 0, guard = 0;
     pthread_attr_getstack(&attributes, &lowest, &size);
     pthread_attr_getguardsize(&attributes, &guard);
     pthread_attr_destroy(&attributes);
-    const auto end = reinterpret_cast<std::uintptr_t>(lowest) + guard;
+    return reinterpret_cast<std::uintptr_t>(lowest) + guard;
+}
+
+/// Unused bytes of the calling thread's stack, of which a call wants so many; SIZE_MAX if the system does not tell. Of
+/// the main thread the system reads a list of all mappings, which takes longer than a small call: the end is kept, and
+/// asked for again if the stack looks too small, as its limit may have been raised.
+std::size_t stack_left(std::size_t wanted) {
+    static thread_local std::uintptr_t end = end_of_stack();
     const auto here = reinterpret_cast<std::uintptr_t>(__builtin_frame_address(0));
-    return here > end ? here - end : SIZE_MAX;
+    if (end != 0 && here < end + wanted) end = end_of_stack();
+    return end == 0 || here < end ? SIZE_MAX : here - end;
 }
 
 /// One team's parts, handed out to the threads that work on them.
@@ -157,7 +165,7 @@ private:
 }  // namespace
 
 void start_team(openmp::team* all) {
-    const std::size_t here = stack_left();
+    const std::size_t here = stack_left(all->stack);
     const std::size_t of_others = std::max(usual_stack, 2 * all->stack);
     all->least_stack = all->parts > 1 ? std::min(here, of_others) : here;
     all->threads = 1;

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Models as functions of arrays, and in JAX and PyTorch, compared with closed forms."""
 
+import concurrent.futures
+
 import numpy as np
 import pytest
 
@@ -33,15 +35,14 @@ def position():
 
 @pytest.fixture
 def launches(monkeypatch):
-    """The numbers of instances of the calls of `solve`."""
-    sizes = []
+    """The numbers of instances of the calls of the core from Python."""
+    sizes, usual = [], my.Batched.repeated
 
-    def counted(*arguments, **options):
-        run = my.solve(*arguments, **options)
-        sizes.append(run.size)
-        return run
+    def counted(self, with_jacobian):
+        call = usual(self, with_jacobian)
+        return lambda rows, results: (sizes.append(len(rows)), call(rows, results))
 
-    monkeypatch.setattr("myriad_ode.gradients.forward.solve", counted)
+    monkeypatch.setattr(my.Batched, "repeated", counted)
     return sizes
 
 
@@ -94,20 +95,27 @@ def jax():
     return jax
 
 
-def test_jax_takes_gradients_of_a_batch_in_one_launch(jax, position, launches):
+def test_jax_takes_gradients_of_a_batch_in_one_call_of_the_core_without_python(jax, position):
     f = position.to_jax()
-    loss = jax.jit(lambda theta: (f(theta) ** 2).sum())
+
+    def loss(theta):
+        return (f(theta) ** 2).sum()
+
     expected = 2 * np.einsum("bt,bti->bi", closed_form(sets, times), closed_slopes(sets, times))
-    np.testing.assert_allclose(jax.vmap(jax.grad(loss))(sets), expected, rtol=1e-6, atol=1e-8)
-    assert launches == [3]
-    np.testing.assert_allclose(jax.grad(lambda all: jax.vmap(loss)(all).sum())(sets), expected, rtol=1e-6, atol=1e-8)
-    np.testing.assert_allclose(jax.vmap(jax.vmap(loss))(np.stack([sets, sets]))[1],
-                               (closed_form(sets, times) ** 2).sum(axis=1), rtol=1e-7)
-    assert launches == [3, 3, 6]
+    squares = (closed_form(sets, times) ** 2).sum(axis=1)
+    for program, argument, found in (
+            (jax.vmap(jax.grad(loss)), sets, expected), (jax.vmap(jax.vmap(loss)), np.stack([sets]), squares[None]),
+            (jax.grad(lambda all: jax.vmap(loss)(all).sum()), sets, expected)):
+        np.testing.assert_allclose(program(argument), found, rtol=1e-6, atol=1e-8)
+        text = jax.jit(program).lower(argument).compile().as_text()
+        assert text.count('custom_call_target="myriad_on_cpu"') == 1 and "callback" not in text
 
 
-def test_jax_has_forward_and_reverse_derivatives(jax, position):
-    f, at = position.to_jax(), sets[1]
+@pytest.mark.parametrize("adjoint", [False, True])
+def test_jax_has_forward_and_reverse_derivatives(jax, adjoint):
+    f = my.batched(spring, free=[k, x], of=x, sweep={B: 0.5}, start={v: 0}, time=(0, 2), samples=times, device="cpu",
+                   adjoint=adjoint, **tight).to_jax()
+    at = sets[1]
     expected = closed_slopes(sets, times)[1]
     for jacobian in (jax.jacfwd(f), jax.jacrev(f), jax.jit(jax.jacrev(f))):
         np.testing.assert_allclose(jacobian(at)[:, 0], expected, rtol=1e-7, atol=1e-9)
@@ -116,11 +124,64 @@ def test_jax_has_forward_and_reverse_derivatives(jax, position):
     np.testing.assert_allclose(values[:, 0], closed_form(at, times), rtol=1e-7)
     pulled, = jax.vjp(f, at)[1](np.ones((3, 1)))
     np.testing.assert_allclose(pulled, expected.sum(axis=0), rtol=1e-7)
+    np.testing.assert_allclose(jax.jit(jax.vmap(jax.jacfwd(f)))(sets)[:, :, 0], closed_slopes(sets, times), rtol=1e-7,
+                               atol=1e-9)
 
 
-def test_jax_gets_no_second_derivatives(jax, position):
-    with pytest.raises(ValueError, match="do not support JVP"):
-        jax.hessian(lambda theta: position.to_jax()(theta).sum())(sets[0])
+@pytest.mark.parametrize("adjoint", [False, True])
+def test_jax_is_told_of_another_way_than_second_derivatives(jax, adjoint):
+    f = my.batched(spring, free=[k, x], of=x, sweep={B: 0.5}, start={v: 0}, time=(0, 2), samples=times, device="cpu",
+                   adjoint=adjoint, **tight).to_jax()
+
+    def loss(theta):
+        return f(theta).sum()
+
+    for second in (jax.hessian(loss), jax.jit(jax.hessian(loss)), jax.jacfwd(jax.jacfwd(f)),
+                   jax.grad(lambda theta: jax.grad(loss)(theta).sum()),
+                   lambda at: jax.jvp(jax.grad(loss), (at,), (at,))):
+        with pytest.raises(my.Error, match="second derivatives of a solution .* Gauss-Newton"):
+            second(sets[0])
+    # a gradient inside of what is differentiated by something else has none
+    slopes = jax.grad(lambda factor: factor**2 * jax.grad(loss)(sets[0]).sum())(3.0)
+    np.testing.assert_allclose(slopes, 6 * closed_slopes(sets, times)[0].sum(), rtol=1e-6)
+
+
+def test_jax_takes_values_in_single_precision_and_integrates_in_double(jax, position):
+    with jax.enable_x64(False):
+        f = position.to_jax()
+        at = sets.astype(np.float32)
+        values, slopes = jax.jit(f)(at), jax.jit(jax.vmap(jax.jacrev(f)))(at)
+        assert values.dtype == slopes.dtype == np.float32
+        expected = position.with_jacobian(at)
+        np.testing.assert_array_equal(values, expected[0].astype(np.float32))
+        np.testing.assert_array_equal(slopes, expected[1].astype(np.float32))
+        assert "myriad_on_cpu" in jax.jit(f).lower(at).as_text()
+
+
+def test_jax_goes_by_python_where_the_core_alone_cannot_or_no_compiler_is_there(jax, position, monkeypatch, tmp_path):
+    file = tmp_path / "spring.ode"
+    file.write_text("par k=1\ninit x=1, v=0\nx' = v\nv' = 0.5 - k*x\naux twice=2*x\ndone\n")
+    doubled = my.batched(my.read_xpp(str(file)), free=["k", "x"], of="twice", time=(0, 2), samples=times, **tight)
+    program = jax.jit(jax.vmap(jax.jacrev(doubled.to_jax())))
+    assert "callback" in program.lower(sets).as_text()
+    np.testing.assert_allclose(program(sets)[:, :, 0], 2 * closed_slopes(sets, times), rtol=1e-7, atol=1e-9)
+    monkeypatch.setattr("myriad_ode.gradients.xla_handler.is_there", lambda: False)
+    program = jax.jit(position.to_jax())
+    assert "callback" in program.lower(sets).as_text()
+    np.testing.assert_array_equal(program(sets), position(sets))
+
+
+def test_jax_programs_run_in_several_threads_and_tell_what_is_wrong(jax, position):
+    program = jax.jit(jax.vmap(jax.grad(lambda theta: (position.to_jax()(theta) ** 2).sum())))
+    expected = program(sets)
+    with concurrent.futures.ThreadPoolExecutor(4) as threads:
+        for found in threads.map(lambda _: program(sets), range(200)):
+            np.testing.assert_array_equal(found, expected)
+    wrong = sets.copy()
+    wrong[1, 0] = np.nan
+    with pytest.raises(Exception, match=r"parameter \d \(k\) is not finite in 1 of 3 instances, first in instance 1"):
+        jax.block_until_ready(program(wrong))
+    np.testing.assert_array_equal(program(sets), expected)  # and goes on
 
 
 def test_a_weight_of_zero_counts_nothing_where_a_derivative_does_not_exist(position, monkeypatch):
@@ -134,11 +195,11 @@ def test_a_weight_of_zero_counts_nothing_where_a_derivative_does_not_exist(posit
 
 
 def test_jax_lets_a_weight_of_zero_count_nothing(jax):
-    from myriad_ode.gradients.jax_adapter import _product
+    from myriad_ode.gradients.jax_rules import product_with_vector
     jacobian = np.array([[2.0, np.nan], [0.0, 3.0]])
 
     def product(vector):
-        return _product().bind(jacobian, vector)
+        return product_with_vector().bind(jacobian, vector)
 
     along, weights = np.array([1.0, 0.0]), np.array([0.0, 1.0])
     np.testing.assert_array_equal(jax.jit(product)(along), [2, 0])

@@ -629,23 +629,23 @@ def run_jax(run):
 @pytest.mark.thorough
 def test_jax_programs_on_a_gpu_have_the_results_and_derivatives_of_the_host_in_one_call(run_jax):
     run_jax("""
-from myriad_ode.gradients import batched
+from myriad_ode.gradients import forward
 there, here = on_gpu(), function("cpu").to_jax()
 for theta in sets, sets[0], np.stack([sets, sets]):
     found = there(theta)
     assert found.shape == (*theta.shape[:-1], 4, 2) and close(found, here(theta))
-sizes, usual = [], batched.solve
-batched.solve = lambda *a, **o: (sizes.append(1), usual(*a, **o))[1]
+sizes, usual = [], forward.solve
+forward.solve = lambda *a, **o: (sizes.append(1), usual(*a, **o))[1]
 gradients = jax.jit(jax.vmap(jax.grad(loss(there))))
 found = gradients(sets)
 assert len(sizes) == 1
-batched.solve = usual
+forward.solve = usual
 assert close(found, jax.vmap(jax.grad(loss(here)))(sets))
 assert close(jax.grad(lambda all: jax.vmap(loss(there))(all).sum())(sets), found)
 assert close(jax.vmap(jax.vmap(there))(np.stack([sets, sets]))[1], here(sets))
 assert close(jax.jacfwd(there)(sets[0]), jax.jacrev(here)(sets[0]))
 program = gradients.lower(sets).as_text()
-assert "myriad_solve" in program and "callback" not in program
+assert "myriad_on_gpu" in program and "callback" not in program
 assert there(np.zeros((0, 3))).shape == (0, 4, 2)
 for more in {"of": x}, {"samples": None}, {"options": my.Options(samples=3), "samples": None}:
     assert close(on_gpu(**more)(sets), function("cpu", **more)(sets))
@@ -659,12 +659,12 @@ def program(f, theta=sets):
 assert "callback" in program(on_gpu(), sets.astype(np.float32))
 for more in ({"of": [x, my.time], "samples": None}, {"make_consistent": True}, {"invalid": "mark"},
              {"precision": "float"}):
-    assert "myriad_solve" not in program(on_gpu(**more)), more
+    assert "myriad_on_gpu" not in program(on_gpu(**more)), more
 single = on_gpu(precision="float", rtol=1e-4)
-assert "myriad_solve" in program(single, sets.astype(np.float32))
+assert "myriad_on_gpu" in program(single, sets.astype(np.float32))
 assert np.allclose(single(sets.astype(np.float32)), function("cpu")(sets), atol=1e-3)
-assert "myriad_solve" not in program(jax_function(function("cpu"), platform="cpu"))
-assert "myriad_solve" not in program(jax_function(function(["cuda:0", "cuda:1"]), platform="cpu"))
+assert "myriad_on_gpu" not in program(jax_function(function("cpu"), platform="cpu"))
+assert "myriad_on_gpu" not in program(jax_function(function(["cuda:0", "cuda:1"]), platform="cpu"))
 """, MYRIAD_SIMULATED_GPUS=2)
 
 

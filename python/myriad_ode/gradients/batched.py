@@ -53,6 +53,7 @@ class Batched:
         self.n_samples = None if samples is None else self._count(samples)  #: None without samples
         if self.n_samples is not None and any(one is time_symbol for one in self.of):
             raise Error("of= has the time at which the last phase ended, which has no samples: leave out samples=")
+        self._repeated: dict[bool, Any] = {}
         #: of `vjp`; None for forward sensitivities
         self.adjoint = Adjoint(model, self.free, self.of, self._forward.sweep, self._forward.start,
                                self._forward.plain_options(), samples) if adjoint else None
@@ -117,24 +118,45 @@ class Batched:
             found[..., failed] = np.nan
         return found
 
-    def _values(self, run: Run, batch: tuple[int, ...]) -> Array:
-        found = self._stacked((run.t_last if one is time_symbol else run._values_of(str(one)) for one in self.of), run)
-        return found.T.reshape(*batch, *self.shape)
+    def repeated(self, with_jacobian: bool) -> Any:
+        """What computes the results for rows of values, and their derivatives if they are wanted, in the core alone;
+        None if that takes `solve`."""
+        if with_jacobian not in self._repeated:
+            of: list[list[Any]] = [self.of]
+            if with_jacobian:
+                names = ["time" if one is time_symbol else one for one in self.of]
+                of.append([f"{one}_by_{k}" for one in names for k in self.free])
+            self._repeated[with_jacobian] = self._forward.repeated(of, self.n_samples, with_jacobian)
+        return self._repeated[with_jacobian]
+
+    def _solved(self, rows: Array, with_jacobian: bool) -> list[Array]:
+        """The results for rows of values, and their derivatives if they are wanted."""
+        count, by = len(rows), len(self.free)
+        shapes = [self.shape, (*self.shape, by)][:1 + with_jacobian]
+        if (call := self.repeated(with_jacobian)) is not None:
+            made = [np.empty((count, *shape)) for shape in shapes]
+            call(rows, made)
+            return made
+        run = self.run(rows, with_jacobian)
+        found = [self._stacked((run.t_last if one is time_symbol else run._values_of(str(one)) for one in self.of),
+                               run)]
+        if with_jacobian:
+            slopes = self._stacked((run.sensitivity[one, k] for k in self.free for one in self.of), run)
+            found.append(slopes.reshape(by, len(self.of), *slopes.shape[1:]))
+        return [array.T.reshape(count, *shape) for array, shape in zip(found, shapes)]
 
     def __call__(self, values: Values) -> Array:
         """The results for one set of values, or for those of a batch."""
         rows, batch = self._rows(values)
-        return self._values(self.run(rows), batch)
+        return self._solved(rows, False)[0].reshape(*batch, *self.shape)
 
     def with_jacobian(self, values: Values) -> tuple[Array, Array]:
         """The results, and their derivatives by the values, along one more axis behind those of the results. What has
         no derivative is NaN."""
         self.check_derivatives()
         rows, batch = self._rows(values)
-        run = self.run(rows, sensitivities=True)
-        slopes = self._stacked((run.sensitivity[one, k] for k in self.free for one in self.of), run)
-        slopes = slopes.reshape(len(self.free), len(self.of), *slopes.shape[1:])
-        return self._values(run, batch), slopes.T.reshape(*batch, *self.shape, len(self.free))
+        found, slopes = self._solved(rows, True)
+        return found.reshape(*batch, *self.shape), slopes.reshape(*batch, *self.shape, len(self.free))
 
     def vjp(self, values: Values, weights: Values | Callable[[Array], Any]) -> tuple[Array, Array]:
         """The results, and the derivatives by the values of a loss that depends on the results: a product of a vector
@@ -164,8 +186,9 @@ class Batched:
 
     def to_jax(self) -> Callable[[Any], Any]:
         """The function for JAX arrays, under `jit`, `vmap`, `grad`, `jvp` and `vjp`; a batch by `vmap` is one call of
-        `solve`. The derivatives are along the solution, with its tolerances; there are no second ones. Results have the
-        type of the argument: double precision needs `jax.config.update("jax_enable_x64", True)`. Arrays on the GPU
+        `solve`. The derivatives are along the solution, with its tolerances; second ones are an error. Results have the
+        type of the argument: double precision needs `jax.config.update("jax_enable_x64", True)`. On a CPU programs of
+        XLA's call the core without Python, where no result is an output and there is a C++ compiler. Arrays on the GPU
         that integrates stay there if they have the type of the integration and all of of= are states; others go by the
         host. Needs the package jax. JAX keeps the function for as long as the process runs."""
         from .jax_adapter import jax_function
@@ -179,6 +202,9 @@ class Batched:
         from .torch_adapter import torch_function
 
         return torch_function(self)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**vars(self), "_repeated": {}}  # which is of this process
 
     def __repr__(self) -> str:
         return f"<myriad_ode.Batched of {self.model!r} by {', '.join(self.free)}>"
@@ -194,8 +220,8 @@ def batched(model: AnyModel, *, free: SomeComponents, of: SomeComponents, sweep:
     sweep     the other parameters and shared values, one number each
     start     the other initial states, one number each
     adjoint   whether gradients are computed by an adjoint, whose cost hardly depends on the number of components that
-              they are by: those of `vjp`, and in JAX and PyTorch those of reverse mode, beside which there is no other
-              then
+              they are by: those of `vjp`, and in JAX and PyTorch those of reverse mode, beside which PyTorch has no
+              other then
     options   of `solve`, as time=, samples=, method=, rtol=, device=, sensitivity_control=
 
     The argument has any number of axes before the last, all of which are integrated at once."""

@@ -15,6 +15,7 @@ from ..models.components import Components, by_component, unknown
 from ..solving.core_options import per_state
 from ..solving.gather import given_values
 from ..solving.options import Options
+from ..solving.repeated import repeated_call
 from ..solving.solve import solve
 from ..sweeps.gpu_inputs import is_on_gpu
 from ..sweeps.inputs import by_name
@@ -45,6 +46,13 @@ class Forward:
         start = {name: value for name, value in values.items() if name in self.states}
         return solve(self.model, {**self.sweep, **sweep}, start={**self.start, **start}, free=free or None,
                      **(self.options if free else self.plain_options()), **more)
+
+    def repeated(self, results: Sequence[Sequence[Any]], samples: int | None, sensitivities: bool) -> Any:
+        """The same for rows of values as a call of the core for these results, as `repeated_call` makes it; None if
+        only `run` can do it."""
+        return repeated_call(self.model, self.free, results, samples,
+                             self.options if sensitivities else self.plain_options(), sweep=self.sweep,
+                             start=self.start, free=self.free if sensitivities else None)
 
     def plain_options(self) -> dict[str, Any]:
         """The options of a call without sensitivities."""

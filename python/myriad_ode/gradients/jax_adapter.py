@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""A batched function for JAX, with a rule for its derivatives: a call on the GPU that integrates, where the argument is
-there, and a callback to the host otherwise."""
+"""A batched function for JAX: a call of the core on a CPU, or on the GPU that integrates, where the argument is there,
+and a callback to Python otherwise."""
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
@@ -12,66 +11,20 @@ import numpy as np
 
 from ..base.errors import Error
 from ..base.statuses import first_failure
-from ..kernels import compiler
-from . import xla_handler as jax_gpu
+from . import jax_rules, xla_handler
 
 if TYPE_CHECKING:
     from .protocol import FunctionOfValues
 
 
-@functools.cache
-def _product() -> Any:
-    """JAX's primitive for the product of a Jacobian and a vector, in which zero times what does not exist is zero, and
-    so is it in the product with the transposed Jacobian, which reverse mode makes of it."""
-    import jax
-    import jax.numpy as jnp
-    from jax.extend.core import Primitive
-    from jax.interpreters import ad, batching, mlir
-
-    def primitive(name: str, axis: int) -> Any:
-        def product(jacobian: Any, vector: Any) -> Any:
-            vector = jnp.expand_dims(vector, -3 - axis)
-            return jnp.where(vector == 0, 0, jacobian * vector).sum(axis)
-
-        def shape_of(*given: Any) -> Any:
-            made = jax.eval_shape(product, *(jax.ShapeDtypeStruct(one.shape, one.dtype) for one in given))
-            return jax.core.ShapedArray(made.shape, made.dtype)
-
-        def batched(given: Any, axes: Any) -> Any:
-            size = next(one.shape[place] for one, place in zip(given, axes) if place is not None)
-            return made.bind(*(jnp.broadcast_to(one, (size, *one.shape)) if place is None else
-                               jnp.moveaxis(one, place, 0) for one, place in zip(given, axes))), 0
-
-        made = Primitive(name)
-        made.def_impl(jax.jit(product))
-        made.def_abstract_eval(shape_of)
-        mlir.register_lowering(made, mlir.lower_fun(product, multiple_results=False))
-        batching.primitive_batchers[made] = batched
-        return made
-
-    forwards, backwards = primitive("myriad_product", -1), primitive("myriad_transposed_product", -2)
-
-    def transposed_to(other: Any) -> Callable[..., Any]:
-        def rule(weights: Any, jacobian: Any, vector: Any) -> Any:
-            return None, ad.Zero(vector.aval) if type(weights) is ad.Zero else other.bind(jacobian, weights)
-
-        return rule
-
-    ad.primitive_transposes[forwards], ad.primitive_transposes[backwards] = map(transposed_to, (backwards, forwards))
-    return forwards
-
-
-def _may_stay(function: FunctionOfValues, platform: str, theta: Any) -> bool:
-    """Whether programs for the platform integrate where the argument is."""
+def _is_there(platform: str) -> bool:
+    """Whether JAX has devices of a platform."""
     import jax
 
-    if theta.dtype != function.real or theta.size == 0 or function.gpu is None:
-        return False
     try:
-        jax.devices(platform)
-    except RuntimeError:  # the platform is not there
+        return bool(jax.devices(platform))
+    except RuntimeError:
         return False
-    return compiler.known_compiler() is not None
 
 
 def _solved(function: FunctionOfValues, platform: str, with_jacobian: bool) -> Callable[[Any], Any]:
@@ -81,7 +34,7 @@ def _solved(function: FunctionOfValues, platform: str, with_jacobian: bool) -> C
 
     shapes = [function.shape, (*function.shape, len(function.free))][:1 + with_jacobian]
 
-    def on_host(theta: Any) -> Any:
+    def by_python(theta: Any) -> Any:
         def call(rows: Any) -> list[Any]:
             rows = np.asarray(rows)
             found = function.with_jacobian(rows) if with_jacobian else [function(rows)]
@@ -91,17 +44,30 @@ def _solved(function: FunctionOfValues, platform: str, with_jacobian: bool) -> C
         return jax.pure_callback(call, [jax.ShapeDtypeStruct((*theta.shape[:-1], *shape), theta.dtype)
                                         for shape in shapes], theta)
 
+    def on_cpu(theta: Any) -> Any:
+        found = xla_handler.call_on_cpu(function, with_jacobian, theta.reshape(-1, len(function.free)))
+        return [array.reshape(*theta.shape[:-1], *shape) for array, shape in zip(found, shapes)]
+
     def on_gpu(theta: Any) -> Any:
-        *found, status = jax_gpu.call(function, with_jacobian, theta.reshape(-1, len(function.free)))
+        *found, status = xla_handler.call_on_gpu(function, with_jacobian, theta.reshape(-1, len(function.free)),
+                                                 platform)
         marked = [jnp.where(status >= first_failure, jnp.nan, array) for array in found]  # instances are last
         return [array.T.reshape(*theta.shape[:-1], *shape) for array, shape in zip(marked, shapes)]
 
+    def natively(theta: Any) -> dict[str, Callable[[Any], Any]]:
+        """What needs no Python, by platform."""
+        if theta.size == 0 or not xla_handler.is_there():
+            return {}
+        if theta.dtype == function.real and function.gpu is not None and _is_there(platform):
+            return {platform: on_gpu}
+        if theta.dtype in (np.float32, np.float64) and function.repeated(with_jacobian) is not None:
+            return {"cpu": on_cpu}
+        return {}
+
     @jax.jit
     def by_platform(theta: Any) -> Any:
-        if not _may_stay(function, platform, theta):
-            return on_host(theta)
-        jax_gpu.register("CUDA" if platform == "cuda" else platform)
-        return jax.lax.platform_dependent(theta, **{platform: on_gpu}, default=on_host)
+        native = natively(theta)
+        return jax.lax.platform_dependent(theta, **native, default=by_python) if native else by_python(theta)
 
     mapped = jax.custom_batching.custom_vmap(by_platform)
     mapped.def_vmap(lambda size, is_mapped, theta: (mapped(theta), [True] * len(shapes)))
@@ -117,32 +83,17 @@ def jax_function(function: FunctionOfValues, platform: str = "cuda") -> Callable
         raise Error("to_jax needs the package jax: `pip install jax`") from None
 
     n_by = len(function.free)
-
     values, values_and_jacobian = (_solved(function, platform, with_jacobian) for with_jacobian in (False, True))
 
     def pulled_back(theta: Any, weights: Any) -> Any:
-        def on_host(rows: Any, of_rows: Any) -> Any:
+        def by_python(rows: Any, of_rows: Any) -> Any:
             return function.vjp(np.asarray(rows), np.asarray(of_rows))[1].astype(theta.dtype)
 
-        return jax.pure_callback(on_host, jax.ShapeDtypeStruct(theta.shape, theta.dtype), theta, weights,
+        return jax.pure_callback(by_python, jax.ShapeDtypeStruct(theta.shape, theta.dtype), theta, weights,
                                  vmap_method="broadcast_all")
 
-    def of_floats(theta: Any) -> Any:
-        return values(theta)[0]
-
-    def pushed_forward(primals: Any, tangents: Any) -> Any:
-        function.check_derivatives()
-        found, jacobian = values_and_jacobian(primals[0])
-        flat = jacobian.reshape(*tangents[0].shape[:-1], -1, n_by)
-        return found, _product().bind(flat, tangents[0]).reshape(found.shape)
-
-    rule: Any
-    if function.adjoint is None:
-        rule = jax.custom_jvp(of_floats)
-        rule.defjvp(pushed_forward)
-    else:
-        rule = jax.custom_vjp(of_floats)
-        rule.defvjp(lambda theta: (of_floats(theta), theta), lambda theta, weights: (pulled_back(theta, weights),))
+    rule = jax_rules.differentiable(lambda theta: values(theta)[0], values_and_jacobian,
+                                    None if function.adjoint is None else pulled_back, function.check_derivatives)
 
     def call(theta: Any) -> Any:
         theta = jnp.asarray(theta)

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from ..symbolic.types import ByComponent, Precision, Progress, SomeComponents, Values
 
 
-class _Call:
+class Call:
     """A call of `solve`: what it computes, then its inputs and options, and at last what it has computed."""
 
     ensemble: Any
@@ -81,18 +81,28 @@ class _Call:
             raise Error(f"{self.method} takes fixed steps: give step=")
         self.core_options, self.recorded, self.sampled = make_options(self.components, self.count, options)
 
-    def integrate(self, devices: Sequence[str], interpreted: bool | None, tolerance_scale: Values | None,
-                  make_consistent: bool, progress: Progress) -> None:
-        """Gets the kernels, fills the ensemble, and integrates it."""
-        kernels = [kernel_for(device, self.model, self.components, self.method, self.control,
-                              self.options.samples is not None, self.precision, interpreted) for device in devices]
-        self.kernel, names = kernels[0]
-        finish_options(self.core_options, self.options, self.components, len(names["state"]), len(names["event"]))
+    def prepare(self, devices: Sequence[str], interpreted: bool | None) -> None:
+        """Gets the kernels."""
+        self._kernels = [kernel_for(device, self.model, self.components, self.method, self.control,
+                                    self.options.samples is not None, self.precision, interpreted)
+                         for device in devices]
+        self.kernel, self._names = self._kernels[0]
+        finish_options(self.core_options, self.options, self.components, len(self._names["state"]),
+                       len(self._names["event"]))
+
+    def filled(self) -> Any:
+        """An ensemble that has all that is given."""
         kind: Any = _core.Ensemble64 if self.precision == "double" else _core.Ensemble32
+        ensemble = kind(self.kernel.library, self._names, self.count)
+        fill(ensemble, self.components, self.given, self.domain, self._names, self.real)
+        return ensemble
+
+    def integrate(self, devices: Sequence[str], tolerance_scale: Values | None, make_consistent: bool,
+                  progress: Progress) -> None:
+        """Fills the ensemble, and integrates it, once all is prepared."""
         display = ProgressDisplay(progress)
         try:
-            self.ensemble = kind(self.kernel.library, names, self.count)
-            fill(self.ensemble, self.components, self.given, self.domain, names, self.real)
+            self.ensemble = self.filled()
             takes_from_gpu = any(isinstance(array, DeviceInput) for array in self.given.values())
             if takes_from_gpu and devices[0].startswith("cuda"):
                 _core.wait_for_gpu(int(devices[0].partition(":")[2]))  # for what other libraries do there
@@ -105,7 +115,7 @@ class _Call:
                     raise Error("make_consistent=True changes arrays on the host, and some are on a GPU: copy them to "
                                 "the host")
                 _core.make_consistent(self.kernel.library, self.ensemble)
-            self.report, self.failure = _core.solve([(k.library, d) for (k, _), d in zip(kernels, devices)],
+            self.report, self.failure = _core.solve([(k.library, d) for (k, _), d in zip(self._kernels, devices)],
                                                     self.ensemble, self.core_options, display if progress else None)
         except Error as error:
             raise with_event_names(error, self.components.event_names) from None
@@ -149,7 +159,7 @@ class _Call:
         return run
 
 
-def _devices(device: str | Sequence[str], interpreted: bool | None) -> tuple[list[str], str | None]:
+def devices_of(device: str | Sequence[str], interpreted: bool | None) -> tuple[list[str], str | None]:
     """The devices of a call, and a note if there is no GPU for "auto"."""
     devices, no_gpu = device_names(device, interpreted)
     if len(devices) > 1 and not all(d.startswith("cuda") for d in devices):
@@ -211,14 +221,15 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
     The options:"""
     begin = clock.perf_counter()
     given = options_of(options, others, solve)
-    devices, no_gpu = _devices(device, interpreted)
-    call = _Call(model, method, control, precision, free, sensitivity_control)
+    devices, no_gpu = devices_of(device, interpreted)
+    call = Call(model, method, control, precision, free, sensitivity_control)
     if paths is not None:
         sweep = with_paths(sweep, count_of_paths(call.model, paths))
     call.gather(sweep, start, time, size, given)
     if call.count == 0:
         call.integrate_none()
         return call.run(clock.perf_counter() - begin)
-    call.integrate(devices, interpreted, tolerance_scale, make_consistent, progress)
+    call.prepare(devices, interpreted)
+    call.integrate(devices, tolerance_scale, make_consistent, progress)
     notes = (no_gpu, time_jumps.note(call.model, longest_step(call.options)), note_on(call.model))
     return call.run(clock.perf_counter() - begin, [one for one in notes if one])
