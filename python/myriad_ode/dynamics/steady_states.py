@@ -163,7 +163,10 @@ class Equations:
         matrices = self.jacobian(states)
         well = np.isfinite(matrices).all(axis=(1, 2)) & np.isfinite(f).all(axis=1)
         steps, solves = np.full_like(states, np.nan), np.zeros(len(states), bool)
-        steps[well] = np.einsum("nij,nj->ni", np.linalg.pinv(matrices[well]), f[well])
+        rows = _largest(matrices[well], 2)  # equations and states have units, which must make no difference
+        columns = _largest(matrices[well] / rows, 1)
+        inverse = np.linalg.pinv(matrices[well] / rows / columns)
+        steps[well] = np.einsum("nij,nj->ni", inverse, f[well] / rows[:, :, 0]) / columns[:, 0]
         left = np.einsum("nij,nj->ni", matrices[well], steps[well]) - f[well]
         solves[well] = np.abs(left).max(axis=1) <= 1e-6 * np.abs(f[well]).max(axis=1)
         return steps, solves
@@ -179,6 +182,12 @@ class Equations:
         return SteadyState(dict(zip(self.states, state.tolist())), eigenvalues, matrix,
                            kind_of(eigenvalues, 3 * np.abs(eigenvalues.real - others.real)),
                            dict(zip(self.states, (_rounding * scale).tolist())))
+
+
+def _largest(matrices: Array, axis: int) -> Array:
+    """The largest magnitude along an axis, 1 where all are zero."""
+    found = np.abs(matrices).max(axis=axis, keepdims=True)
+    return np.where(found > 0, found, 1.0)
 
 
 def _sorted(eigenvalues: Array) -> Array:
