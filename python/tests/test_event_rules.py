@@ -166,8 +166,16 @@ def test_a_touch_is_found_where_the_cubic_through_a_long_step_is_too_coarse():
     assert run[n][0] == 2
 
 
-def test_what_crosses_within_the_tolerance_of_another_event_fires_with_it():
-    events = [my.event(x, direction="falling", do={x: 1.0, n: n + 1}, tolerance=1e-6),
-              my.event(x + 5e-7, direction="falling", do={k: k + 1}, tolerance=1e-9)]
+def test_an_event_does_not_take_along_what_would_cross_only_after_its_action():
+    events = [my.event(x, direction="falling", do={x: 1.0, n: n + 1}, tolerance=1e-3),
+              my.event(x + 5e-4, direction="falling", do={k: k + 1}, tolerance=1e-9)]
     run = solved({x: -1.0}, events, {n: 0, k: 0}, size=1, start={x: 1.0}, time=(0, 10.5))
-    assert run[n][0] == run[k][0] == 10
+    assert run[n][0] == 10 and run[k][0] == 0
+
+
+@pytest.mark.parametrize("tolerance", [0.0, 1e-9])
+def test_an_event_takes_along_its_double_with_a_smaller_tolerance(tolerance):
+    events = [my.event(my.sinh(8 * x), direction="falling", do={x: y, n: n + 1}, tolerance=1e-2),
+              my.event(my.sinh(8 * x), direction="falling", do={k: k + 1}, tolerance=tolerance)]
+    run = solved({x: -1.0, y: 0.0}, events, {n: 0, k: 0}, start={x: 1.0, y: np.linspace(0.2, 1, 200)}, time=(0, 10))
+    assert (run[n] > 9).all() and (run[n] == run[k]).all()

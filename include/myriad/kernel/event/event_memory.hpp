@@ -73,11 +73,14 @@ struct event_scratch {
 template <class Model, class R>
 struct event_scratch<Model, R, false> {};
 
+/// A function that is as flat at its zero as this power is there within so many times the time that its slope tells.
+inline constexpr double most_flat = 8;
+
 /// Finds the slopes of the event functions along the solution at the end of the step, or at its start, where they have
 /// rounding errors `place.rounding`; their headings there, +1 or -1, in the direction of the step; and which of those
 /// that crossed in the trial before cross at that very point, as far as can be told: those within the tolerance given,
-/// and those on their other side as soon as rounding lets them move, or where those within their tolerance may cross.
-/// The sign then tells, not the size at the point: it is the same for x and x^3.
+/// and those on their other side as soon as rounding lets them move, or where those within their tolerance are zero. The
+/// sign then tells, not the size at the point: it is the same for x and x^3.
 template <class Model, class R>
 MYRIAD_RARE_FUNCTION void look_around(event_scratch<Model, R>* at, const event_memory<Model, R>* own, bool at_start) {
     const auto& step = at->step;
@@ -106,7 +109,8 @@ MYRIAD_RARE_FUNCTION void look_around(event_scratch<Model, R>* at, const event_m
         if (!(at->tolerance[j] > place.rounding[j]) || !(at->side[j] * place.here[j] <= at->tolerance[j])) continue;
         at->crosses.set(j, true);
         if (!detail::tells_heading(at->slope[j])) continue;
-        place.first = max(place.first, min(at->tolerance[j] * reciprocal(abs(at->slope[j])), most));
+        const R until_zero = R(most_flat) * at->side[j] * place.here[j] * reciprocal(abs(at->slope[j]));
+        place.first = max(place.first, min(until_zero, most));
     }
     MYRIAD_ROLLED
     for (at->function = 0; at->function < MYRIAD_LENGTH(n_event<Model>); ++at->function) {
