@@ -79,8 +79,8 @@ inline constexpr double most_flat = 8;
 /// Finds the slopes of the event functions along the solution at the end of the step, or at its start, where they have
 /// rounding errors `place.rounding`; their headings there, +1 or -1, in the direction of the step; and which of those
 /// that crossed in the trial before cross at that very point, as far as can be told: those within the tolerance given,
-/// and those on their other side as soon as rounding lets them move, or where those within their tolerance are zero. The
-/// sign then tells, not the size at the point: it is the same for x and x^3.
+/// and those on their other side as soon as rounding lets them move, or where those within their tolerance are zero.
+/// The sign then tells, not the size at the point: it is the same for x and x^3.
 template <class Model, class R>
 MYRIAD_RARE_FUNCTION void look_around(event_scratch<Model, R>* at, const event_memory<Model, R>* own, bool at_start) {
     const auto& step = at->step;
