@@ -204,6 +204,23 @@ def test_what_is_not_supported_is_refused_with_its_line(line, said):
     assert said in str(error.value) and "line " in str(error.value)
 
 
+def test_names_with_letters_outside_ascii_are_those_of_the_model_in_ascii_letters(tmp_path):
+    (tmp_path / "modèle.ode").write_text("# é\npar Bêta=2, β=3, beta=5, 質=7\nx'=-Bêta*x+β\ny'=beta+質\naux ω=x*β\n")
+    model = my.read_xpp(tmp_path / "modèle.ode")
+    assert model.name == "modele" and set(model.parameters) == {"beta", "beta1", "beta2", "u8cea"}
+    run = my.solve(model, {"β": [3.0, 4.0]}, start={"x": 1}, time=(0, 1), rtol=1e-9, atol=1e-9, interpreted=True)
+    exact = np.array([3.0, 4.0]) / 2 + (1 - np.array([3.0, 4.0]) / 2) * np.exp(-2)
+    np.testing.assert_allclose(run["x"], exact, rtol=1e-7)
+    np.testing.assert_allclose(run["y"], 12.0, rtol=1e-12)
+    np.testing.assert_allclose(run["ω"], exact * [3.0, 4.0], rtol=1e-7)
+
+
+def test_the_number_of_equations_may_stand_first():
+    assert my.read_xpp("# a comment\n2\nx'=y\ny'=-x\n").states == my.read_xpp("x'=y\ny'=-x\n").states
+    with pytest.raises(my.Error, match="line 2, `2`"):
+        my.read_xpp("x'=1\n2\n")
+
+
 def test_what_wiener_names_is_noise_of_the_equations():
     model = my.read_xpp("wiener w z\npar s=.5, a=2\nx'=1-a*(x-noise)-.25*z\ny'=a*y*(3+w)\nv'=x\nnoise=s*w\n"
                         "aux twice=2*x\naux rough=x+w\n")

@@ -23,7 +23,7 @@ from ...symbolic.interpolate import interpolate
 from ...symbolic.rewrite import rebuilt
 from ..deep_stack import deeply
 from .formula import Names, NoFormula, formula
-from .ode_file import Global, Line, OdeFile, is_number
+from .ode_file import Global, Line, OdeFile, in_ascii, is_number
 
 if TYPE_CHECKING:
     from ...symbolic.types import Path
@@ -106,7 +106,7 @@ class XppModel(Model):
         if noise and parts.events:
             parts.events[0].line.refuse("a model with noise has no events yet: its paths are too rough to locate them")
         events = [self._event(one, number, names, states, parameters) for number, one in enumerate(parts.events, 1)]
-        name = self._component(re.sub("_+", "_", re.sub(r"\W", "_", name.lower())).strip("_") or "model")
+        name = self._component(re.sub("_+", "_", re.sub(r"\W", "_", in_ascii(name.lower()))).strip("_") or "model")
         self._reserved = {*self._taken, *self._ids}
         super().__init__(equations, events, None, None, None, None, None, None, list(parameters.values()), (), name,
                          noise=noise)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+import unicodedata
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path as FilePath
@@ -77,6 +78,34 @@ def _kind_of(word: str) -> str | None:
     return None
 
 
+def in_ascii(word: str) -> str:
+    """A name like a word, in letters of ASCII: without accents, with the names of Greek letters."""
+    def letter(c: str) -> str:
+        if c.isascii() or unicodedata.combining(c):
+            return c if c.isascii() else ""
+        name = unicodedata.name(c, "").lower().partition(" letter ")[2].partition(" ")[0]
+        return name if name.isidentifier() else f"u{ord(c):04x}"
+
+    return "".join(letter(c) for c in unicodedata.normalize("NFKD", word))
+
+
+def _names_in_ascii(text: str) -> tuple[str, dict[str, str]]:
+    """A text with names in letters of ASCII, and {such a name in small letters: the one that the text has}."""
+    found = dict.fromkeys(re.findall(r"[^\W\d]\w*", text))
+    names = {word.lower(): word.lower() for word in found if word.isascii()}
+    taken, spelled = {*names}, {}
+    for word in found:
+        if word.lower() in names:
+            continue
+        name, number = (first := in_ascii(word.lower())), 0
+        while name in taken:
+            number += 1
+            name = f"{first}{number}"
+        taken.add(name)
+        names[word.lower()], spelled[name] = name, word
+    return re.sub(r"[^\W\d]\w*", lambda at: at[0] if at[0].isascii() else names[at[0].lower()], text), spelled
+
+
 class OdeFile:
     """The statements of a file in `parts`, what stands behind @ in `settings`, and the values of each `set`."""
 
@@ -84,8 +113,8 @@ class OdeFile:
         self.folder = folder
         self.settings: dict[str, Any] = {}
         self.sets: dict[str, dict[str, float]] = {}
-        self.spelled: dict[str, str] = {}  # names as the file has them
         self.parts = Parts()
+        text, self.spelled = _names_in_ascii(text)  # names as the file has them
         for line in self._lines(text):
             self._read(line)
         if not self.parts.equations:
@@ -175,6 +204,8 @@ class OdeFile:
             self._statement(line, kind, statement[2].strip())
             return
         if text.split()[0] == "only":  # which says what is plotted
+            return
+        if text.isdigit() and not parts.equations:  # how many equations follow
             return
         if re.search(r"\bint\s*[\[{]", text):
             line.refuse("integral equations are not supported")
