@@ -179,3 +179,25 @@ def test_an_event_takes_along_its_double_with_a_smaller_tolerance(tolerance):
               my.event(my.sinh(8 * x), direction="falling", do={k: k + 1}, tolerance=tolerance)]
     run = solved({x: -1.0, y: 0.0}, events, {n: 0, k: 0}, start={x: 1.0, y: np.linspace(0.2, 1, 200)}, time=(0, 10))
     assert (run[n] > 9).all() and (run[n] == run[k]).all()
+
+
+def test_steps_before_the_last_action_of_an_event_do_not_count_at_the_end_of_the_domain():
+    level = my.accessory("level")
+    event = my.event(x - level, direction="rising", do={level: 1.0, n: n + 1})
+    run = solved({x: 1.0}, event, {n: 0, level: 0.9}, size=1, start={x: 0.0}, time=(0, 1 - 2e-12), maximum_step=1e-4)
+    assert run[n][0] == 1
+
+
+def test_the_roundings_of_the_times_of_all_actions_count_at_the_end_of_the_domain():
+    rates = np.linspace(1, 2, 300)
+    run = solved({x: w}, my.event(x - 1, do={x: x - 1, n: n + 1}), {n: 0}, {w: rates}, start={x: 0.0},
+                 time=(0, 200 / rates))
+    assert (run[n] == 200).all()
+
+
+@pytest.mark.parametrize("before", [2e-9, 1e-8])
+def test_a_touch_a_little_after_the_end_of_the_domain_is_no_crossing(before):
+    rates = np.linspace(1, 2, 300)
+    run = solved({x: v, v: -2 * w * w}, my.event(x - 1, do={n: n + 1}), {n: 0}, {w: rates},
+                 start={x: 0.0, v: 2 * rates}, time=(0, 1 / rates - before), maximum_step=0.05)
+    assert (run[n] == 0).all()
