@@ -126,9 +126,9 @@ struct team_run {
     /// The calling thread asks the host whether to stop while the last instances of other threads are under way. It
     /// sleeps for small parts of the time that it has waited already.
     void wait_for_others() {
-        constexpr int soon = 2000;
-        constexpr std::int64_t shortest = 20'000, longest = 20'000'000;  // ns
-        for (int i = 0; i < soon && at_work > 0; ++i) sched_yield();
+        constexpr std::int64_t soon = 500'000, shortest = 20'000, longest = 20'000'000;  // ns
+        // By the clock: where other programs have the cores, each call may take milliseconds.
+        for (const std::int64_t begin = nanoseconds(); at_work > 0 && nanoseconds() - begin < soon;) sched_yield();
         for (std::int64_t waited = 0; at_work > 0;) {
             supply.follow(options, count);
             const std::int64_t next = std::clamp(waited / 64, shortest, longest);
@@ -136,6 +136,11 @@ struct team_run {
             nanosleep(&nap, nullptr);
             waited += next;
         }
+    }
+    static std::int64_t nanoseconds() {
+        timespec now{};
+        clock_gettime(CLOCK_MONOTONIC, &now);
+        return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
     }
 };
 
