@@ -7,8 +7,8 @@ in packs and then in single lanes, as on GPUs.
 Usage: event_rules.py [--build DIR] [--package DIR] [--only NAME,...] [--jobs N] [--seconds S] [--python PROGRAM]
        event_rules.py --check
 `--build` is a folder of CMake's with Ninja in which the programs are built, `--package` one in which the package is
-(build/python of scripts/python.sh). `--check` only shows that each text stands in its header exactly once. Exit status
-1 if a mutation was not found, or a text is not there.
+(that in build/python, made by scripts/python.sh). `--check` only shows that each text stands in its header exactly
+once. Exit status 1 if a mutation was not found, or a text is not there.
 """
 import argparse
 import concurrent.futures
@@ -81,7 +81,7 @@ MUTATIONS = {
     "jumps_apart": ("general_locator.hpp", "narrow && redo.changed[j]", "false",
                     "functions that change sign within one rounding of time fire together"),
     "not_within_tolerances": ("event_memory.hpp", "max(place.length, place.first)", "place.length",
-                              "what crosses where another may, by its tolerance, crosses with it"),
+                              "what crosses where another within its tolerance is zero crosses with it"),
     "size_decides": ("event_memory.hpp", "if (place.length * R(64) <= abs(place.t) + abs(place.h) &&", "if (false &&",
                      "the sign a little ahead decides what is here, not the size"),
     "zero_at_end_left_out": ("event_location.hpp", "redo.crossed.set(j, crossed[j] || may_cross);",

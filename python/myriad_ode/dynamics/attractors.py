@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +11,7 @@ import numpy as np
 
 from ..base import html
 from ..base.errors import Error
+from ..base.packages import package
 from ..base.statuses import status_names
 from ..sweeps.inputs import real
 from . import attractor_plots
@@ -123,11 +124,6 @@ class Attractors(Sequence[Attractor]):
     def __len__(self) -> int:
         return len(self._attractors)
 
-    def __iter__(self) -> Iterator[Attractor]:
-        return iter(self._attractors)
-
-    __eq__, __hash__ = object.__eq__, object.__hash__
-
     @property
     def shares(self) -> Array:
         """The share of all starts that each attractor has: of random starts its basin stability."""
@@ -171,18 +167,12 @@ class Attractors(Sequence[Attractor]):
 
     def to_pandas(self) -> pandas.DataFrame:
         """A row for each attractor: kind, period, share, and the range and mean of each state."""
-        try:
-            import pandas
-        except ImportError:
-            raise Error("to_pandas needs the package pandas: `pip install pandas`") from None
+        pandas = package("pandas", "to_pandas")
         return pandas.DataFrame(self._columns(), index=pandas.RangeIndex(len(self), name="attractor"))
 
     def to_xarray(self) -> xarray.Dataset:
         """The labels along the axes of the starts, and what `to_pandas` has along `attractor`."""
-        try:
-            import xarray
-        except ImportError:
-            raise Error("to_xarray needs the package xarray: `pip install xarray`") from None
+        xarray = package("xarray", "to_xarray")
         names = [name if name in ("draw", "instance") else f"{name}_start" for name, _ in self.start.axes]
         of = {axis: name for (axis, _), name in zip(self.start.axes, names)}
         coordinates = {f"{name}_start": (of[axis], np.asarray(values))

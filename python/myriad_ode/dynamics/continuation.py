@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..base.errors import Error
+from ..base.packages import package
 from ..sweeps.inputs import real
 from ..sweeps.sweep import Sweep
 from . import attractor_plots
@@ -47,11 +48,6 @@ class Continuation(Sequence[Attractors]):
     def __len__(self) -> int:
         return len(self._found)
 
-    def __iter__(self) -> Iterator[Attractors]:
-        return iter(self._found)
-
-    __eq__, __hash__ = object.__eq__, object.__hash__
-
     def kinds(self, number: int) -> list[str]:
         """What an attractor is at each value in a few words; empty where it is not there."""
         return [at[of.index(number)].name if number in of else "" for at, of in zip(self, self.numbers)]
@@ -63,10 +59,7 @@ class Continuation(Sequence[Attractors]):
 
     def to_xarray(self) -> xarray.Dataset:
         """The shares along the parameter and the numbers of attractors, and the means of the states."""
-        try:
-            import xarray
-        except ImportError:
-            raise Error("to_xarray needs the package xarray: `pip install xarray`") from None
+        xarray = package("xarray", "to_xarray")
         names = list(next((one.mean for at in self for one in at), {}))
         means = {name: np.full(self.shares.shape, np.nan) for name in names}
         for i, (at, of) in enumerate(zip(self, self.numbers)):

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..base import plots
 from ..base.errors import Error
+from ..base.packages import package
 from ..models.components import name_of
 from ..sweeps.inputs import real
 from ..sweeps.sweep import Sweep
@@ -82,10 +83,7 @@ class Hysteresis:
 
     def to_xarray(self) -> xarray.Dataset:
         """The points by state along direction, parameter, start and phase."""
-        try:
-            import xarray
-        except ImportError:
-            raise Error("to_xarray needs the package xarray: `pip install xarray`") from None
+        xarray = package("xarray", "to_xarray")
         dims = ("direction", self.parameter, "start", "phase")
         return xarray.Dataset({name: (dims, np.stack([of[name] for of in self.branches.values()]))
                                for name in self.states},

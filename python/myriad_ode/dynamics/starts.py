@@ -27,6 +27,14 @@ def components_of(model: AnyModel) -> Components:
     return Components(model)
 
 
+def parameter_of(components: Components, key: Any) -> str:
+    """The name of what must be a parameter or a shared component of the model."""
+    name = components.component(key)
+    if components.place.get(name, ("",))[0] not in ("parameter", *kinds.shared):
+        raise unknown(name, components.of(["parameter", *kinds.shared]), "parameter of the model")
+    return name
+
+
 class Starts:
     """Initial states by name, one for each orbit. `sweep` has their axes; `is_random` tells whether they are drawn."""
 
@@ -97,7 +105,4 @@ def along_one(model: AnyModel, sweep: Sweep | ByComponent) -> tuple[str, Array, 
     (name, (_, values)), = sweep.coordinates.items()
     if not len(values):
         raise Error(f"the sweep has no values of {name}: give at least one")
-    called = components.component(name)
-    if components.place.get(called, ("",))[0] not in ("parameter", *kinds.shared):
-        raise unknown(name, components.of(["parameter", *kinds.shared]), "parameter of the model")
-    return called, np.asarray(values), dict(sweep.constants)
+    return parameter_of(components, name), np.asarray(values), dict(sweep.constants)

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..base import component_kinds as kinds
 from ..base.errors import Error
-from ..models.components import Components, name_of, unknown
+from ..models.components import Components, name_of
 from ..models.recorded import RecordedModel
 from ..sweeps.inputs import numbers, real
 from ..symbolic import symbols as sym
@@ -20,7 +20,7 @@ from ..symbolic.evaluate import evaluate
 from ..symbolic.expression import as_number
 from ..symbolic.node import symbols_of
 from .orbits import counted
-from .starts import Starts, constant_values
+from .starts import Starts, constant_values, parameter_of
 
 if TYPE_CHECKING:
     from ..models.any_model import AnyModel
@@ -90,10 +90,7 @@ class Equations:
                         "my.attractors")
         self.states, self._symbols = model.states, [sym.symbol("state", name) for name in model.states]
         components = Components(model)
-        given = {components.component(key): numbers(value, name_of(key)) for key, value in values.items()}
-        for name in given:
-            if components.place.get(name, ("",))[0] not in ("parameter", *kinds.shared):
-                raise unknown(name, components.of(["parameter", *kinds.shared]), "parameter of the model")
+        given = {parameter_of(components, key): numbers(value, name_of(key)) for key, value in values.items()}
         given = components.completed(given, np.asarray(0.0))
         self._known = {}
         for symbol in found:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..base.errors import Error
+from ..base.packages import package
 from ..base.statuses import first_failure
 from . import jax_rules, xla_handler
 
@@ -76,12 +77,8 @@ def _solved(function: FunctionOfValues, platform: str, with_jacobian: bool) -> C
 
 def jax_function(function: FunctionOfValues, platform: str = "cuda") -> Callable[[Any], Any]:
     """As `Batched.to_jax`. `platform` is JAX's name of that whose arrays are in the memory of a GPU of Myriad's."""
-    try:
-        import jax
-        import jax.numpy as jnp
-    except ImportError:
-        raise Error("to_jax needs the package jax: `pip install jax`") from None
-
+    jax = package("jax", "to_jax")
+    jnp = jax.numpy
     n_by = len(function.free)
     values, values_and_jacobian = (_solved(function, platform, with_jacobian) for with_jacobian in (False, True))
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..base.errors import Error
+from ..base.packages import package
 from ..sweeps.gpu_inputs import is_on_gpu
 
 if TYPE_CHECKING:
@@ -162,11 +163,7 @@ def _values_alone(torch: Any, solved: Callable[[Any, bool], Any]) -> Any:
 
 def torch_function(function: FunctionOfValues) -> Callable[[Any], Any]:
     """As `Batched.to_torch`."""
-    try:
-        import torch
-    except ImportError:
-        raise Error("to_torch needs the package torch: `pip install torch`") from None
-
+    torch = package("torch", "to_torch")
     solved = _solver(torch, function)
     with_jacobian, with_adjoint = _with_jacobian(torch, function, solved), _with_adjoint(torch, function, solved)
     values_alone = _values_alone(torch, solved)

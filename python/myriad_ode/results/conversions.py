@@ -12,6 +12,7 @@ import numpy as np
 from .. import _core
 from ..base import component_kinds as kinds
 from ..base.errors import Error
+from ..base.packages import package
 from ..base.statuses import in_words, status_names
 from ..base.whole_files import replacing
 
@@ -38,10 +39,7 @@ def _axes(run: Results) -> tuple[list[str], tuple[int, ...]]:
 
 
 def to_xarray(run: Results) -> xarray.Dataset:
-    try:
-        import xarray
-    except ImportError:
-        raise Error("to_xarray needs the package xarray: `pip install xarray`") from None
+    xarray = package("xarray", "to_xarray")
     dims, lengths = _axes(run)
     along = {} if run.sweep is None else {_axis(run, name): (_axis(run, axis), np.asarray(values))
                                           for name, (axis, values) in run.sweep.coordinates.items()}
@@ -117,10 +115,7 @@ def _table(run: Results, instead: str) -> dict[str, Array]:
 
 
 def to_pandas(run: Results, instead: str = "to_xarray()") -> pandas.DataFrame:
-    try:
-        import pandas
-    except ImportError:
-        raise Error("to_pandas needs the package pandas: `pip install pandas`") from None
+    pandas = package("pandas", "to_pandas")
     table: dict[str, Any] = dict(_table(run, instead))
     table["status"] = pandas.Categorical.from_codes(table["status"], status_names)
     return pandas.DataFrame(table)

@@ -13,6 +13,7 @@ import numpy as np
 from .. import _core
 from ..base import html
 from ..base.errors import Error
+from ..base.packages import package
 from ..base.statuses import first_failure, in_words, status_names
 from ..base.whole_files import replacing
 from ..models.components import name_of
@@ -202,10 +203,7 @@ class StudyResult(Mapping):
         """The results as an `xarray.Dataset` along the axes of the study. A store is read when its values are used,
         chunk by chunk. What is not done is NaN, the attribute `_FillValue` of integers, and "not_started" of statuses,
         which are words; files have them as numbers, with the flags of the CF conventions."""
-        try:
-            import xarray
-        except ImportError:
-            raise Error("to_xarray needs the package xarray: `pip install xarray`") from None
+        xarray = package("xarray", "to_xarray")
         variables: dict[str, Any] = {}
         coordinates: dict[str, Any] = {}
         for name, (type_name, inner, attributes, of_instances, is_coordinate) in self._written().items():

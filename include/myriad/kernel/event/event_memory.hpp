@@ -73,7 +73,7 @@ struct event_scratch {
 template <class Model, class R>
 struct event_scratch<Model, R, false> {};
 
-/// A function that is as flat at its zero as this power is there within so many times the time that its slope tells.
+/// The slope of x^n puts its zero n times too near: the largest n that is allowed for.
 inline constexpr double most_flat = 8;
 
 /// Finds the slopes of the event functions along the solution at the end of the step, or at its start, where they have
@@ -110,7 +110,7 @@ MYRIAD_RARE_FUNCTION void look_around(event_scratch<Model, R>* at, const event_m
         at->crosses.set(j, true);
         if (!detail::tells_heading(at->slope[j])) continue;
         const R until_zero = R(most_flat) * at->side[j] * place.here[j] * reciprocal(abs(at->slope[j]));
-        place.first = max(place.first, min(until_zero, most));
+        place.first = max(place.first, min(until_zero, most));  // until all that are within their tolerances are zero
     }
     MYRIAD_ROLLED
     for (at->function = 0; at->function < MYRIAD_LENGTH(n_event<Model>); ++at->function) {
