@@ -201,3 +201,11 @@ def test_a_touch_a_little_after_the_end_of_the_domain_is_no_crossing(before):
     run = solved({x: v, v: -2 * w * w}, my.event(x - 1, do={n: n + 1}), {n: 0}, {w: rates},
                  start={x: 0.0, v: 2 * rates}, time=(0, 1 / rates - before), maximum_step=0.05)
     assert (run[n] == 0).all()
+
+
+@pytest.mark.parametrize("does", [{n: n + 1}, {n: n + 1, v: v + 1}])
+def test_a_function_that_goes_to_zero_and_rests_there_has_crossed_once(does):
+    flat = my.maximum(1 - x, 0)**3 - my.maximum(x - 2, 0)**3
+    run = solved({x: 1.0, v: 0.0}, my.event(flat, direction="falling", do=does), {n: 0}, size=1,
+                 start={x: 0.0, v: 0.0}, time=(0, 4), maximum_step=0.4)
+    assert run.status[0] == "success" and run[n][0] == 1
