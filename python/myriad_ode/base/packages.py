@@ -15,3 +15,11 @@ def package(name: str, user: str) -> Any:
         return importlib.import_module(name)
     except ImportError:
         raise Error(f"{user} needs the package {name}: `pip install {name}`") from None
+
+
+def installed(name: str) -> Any:
+    """The package of a name, None where it is not installed."""
+    try:
+        return importlib.import_module(name)
+    except ImportError:
+        return None

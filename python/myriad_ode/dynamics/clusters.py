@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Which orbits go to one attractor, told by points of them: arrays alone, without a model.
+"""Which orbits go to one attractor, told by points of them: arrays alone, without a model. Features are computed where
+the points are, in arrays of NumPy or of CuPy.
 
 Orbits are first grouped by features that do not depend on the phase, as Stender and Hoffmann do (bSTAB, Nonlinear
 Dynamics 107 (2022) 1451); groups are then compared as sets of points, after Datseris and Wagemakers' idea that an
@@ -43,11 +44,11 @@ def lags(points: Array, tolerance: float) -> tuple[Array, Array]:
     last = points[:, -1:]
     off = np.abs(points[:, count - 1 - half:count - 1][:, ::-1] - last).max(axis=2)
     near = off <= tolerance
-    lag, error = np.zeros(orbits, int), np.full(orbits, np.inf)
+    lag, error = np.zeros(orbits, int, like=points), np.zeros(orbits, like=points) + np.inf
     for _ in range(4):  # an orbit may pass by its last point before it returns
         first = near.argmax(axis=1) + 1
         open_ = np.flatnonzero((lag == 0) & near.any(axis=1))
-        for k in np.unique(first[open_]):
+        for k in np.unique(first[open_]).tolist():
             of = open_[first[open_] == k]
             after = (count // k - 1) * k  # as many returns as there are, as on a torus it may drift
             most = np.maximum(*(np.abs(points[of, shift:] - points[of, :-shift]).max(axis=(1, 2)) for shift in
@@ -58,9 +59,10 @@ def lags(points: Array, tolerance: float) -> tuple[Array, Array]:
     return lag, error
 
 
-def _hann(count: int) -> Array:
-    """Weights by Hann's window, with which averages depend little on the parts of a period at either end."""
-    weights = np.sin(np.pi * (np.arange(count) + 0.5) / count)**2
+def _hann(points: Array) -> Array:
+    """Weights of points by Hann's window, with which averages depend little on the parts of a period at either end."""
+    count = points.shape[1]
+    weights = np.sin(np.pi * (np.arange(count, like=points) + 0.5) / count)**2
     return weights / weights.sum()
 
 
@@ -76,18 +78,18 @@ def features_of(points: Array, tolerance: float, may_return: bool) -> Features:
     are those of whole cycles."""
     orbits, count, _ = points.shape
     halves = [points[:, :count // 2], points[:, count // 2:]]
-    first, second = ([*_averages(half, _hann(half.shape[1])), half.min(axis=1), half.max(axis=1)] for half in halves)
+    first, second = ([*_averages(half, _hann(half)), half.min(axis=1), half.max(axis=1)] for half in halves)
     error = np.abs(np.concatenate(first, axis=1) - np.concatenate(second, axis=1)).max(axis=1)
     extremes = [np.minimum(first[2], second[2]), np.maximum(first[3], second[3])]
-    values = np.concatenate([*_averages(points, _hann(count)), *extremes], axis=1)
-    lag = np.zeros(orbits, int)
+    values = np.concatenate([*_averages(points, _hann(points)), *extremes], axis=1)
+    lag = np.zeros(orbits, int, like=points)
     if may_return:
         lag, off = lags(points, tolerance)
         error = np.where(lag > 0, off, error)
-        for k in np.unique(lag[lag > 0]):
-            of, whole = lag == k, count // k * k
+        for k in np.unique(lag[lag > 0]).tolist():
+            of, whole = np.flatnonzero(lag == k), count // k * k
             values[of, :2 * points.shape[2]] = np.concatenate(
-                _averages(points[of, count - whole:], np.full(whole, 1 / whole)), axis=1)
+                _averages(points[of, count - whole:], np.zeros(whole, like=points) + 1 / whole), axis=1)
     return Features(values, error, lag)
 
 

@@ -4,13 +4,15 @@ of a flow without either at times that have no common measure with any period.""
 
 from __future__ import annotations
 
+import contextlib
 import copy
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from ..base.errors import Error, refuse_options
+from ..base.packages import installed
 from ..models.any_model import AnyModel
 from ..models.components import listed
 from ..models.recorded import RecordedModel
@@ -108,23 +110,33 @@ class Motion:
         model = WithTangents(self.model, 1, transient)
         return self._run(starts, model, phases=transient + phases)
 
-    def orbits(self, starts: Mapping[str, Array], transient: int, count: int) -> Orbits:
-        """So many points of each orbit after so many phases."""
+    def orbits(self, starts: Mapping[str, Array], transient: int, count: int, stay: bool = False) -> Orbits:
+        """So many points of each orbit after so many phases. With `stay` they stay on a GPU that they were made on,
+        as an array of CuPy, if that is installed."""
         if not self.is_map:
-            return self._of_flow(starts, transient, count)
+            return self._of_flow(starts, transient, count, stay)
         run = self._run(starts, phases=transient + count,
                         record={"from_phase": transient, "states": self.states, "time": True})
-        points = _together([run.records[name] for name in self.states])
+        points = self._points(run, stay, run.records, run.device.__getitem__)
         return Orbits(points, self._ends(run), run.status_codes, run.failed, run["t"])
 
-    def _of_flow(self, starts: Mapping[str, Array], transient: int, count: int) -> Orbits:
+    def _points(self, run: Run, stay: bool, here: Mapping[str, Array], there: Callable[[str], Any]) -> Array:
+        """Records or samples of the states, on the host or on the GPU."""
+        cupy = installed("cupy") if stay and run.report.device.startswith("cuda") else None
+        if cupy is not None:
+            with contextlib.suppress(Error):  # of a run in parts they are on the host alone
+                return _together([cupy.asarray(there(name)) for name in self.states])
+        return _together([here[name] for name in self.states])
+
+    def _of_flow(self, starts: Mapping[str, Array], transient: int, count: int, stay: bool) -> Orbits:
         before, window = transient * self.phase, count * self.phase
         times = self.begin + before + window * (np.arange(samples_of_phase * count) + 0.5) / (samples_of_phase * count)
         run = self.sampled(starts, times, self.begin + before + window)
-        points = _together([run.samples[name] for name in self.states])
+        points = self._points(run, stay, run.samples, run.device.samples)
         ends = self._ends(run)
         early = ~run.failed & (run.stored_samples < len(times))  # where a hook has ended the phase
         if early.any():
+            points = on_host(points)
             at_end = np.stack([ends[name][early] for name in self.states], axis=1)[:, None]
             points[early] = np.where(np.isnan(points[early]), at_end, points[early])
         return Orbits(points, ends, run.status_codes, run.failed, None)
@@ -173,6 +185,11 @@ class Motion:
 def _together(columns: Sequence[Array]) -> Array:
     """Arrays of equal shape, one for each coordinate, as one with them along its last axis; in memory each is whole."""
     return np.moveaxis(np.stack(columns), 0, -1)
+
+
+def on_host(array: Any) -> Array:
+    """An array of NumPy or of CuPy as one of NumPy."""
+    return array if isinstance(array, np.ndarray) else array.get()
 
 
 def _refuse(model: AnyModel, options: Mapping[str, Any]) -> None:

@@ -13,7 +13,7 @@ import numpy as np
 from .clusters import Features, PointSet, distances, features_of, grouped, merged, path
 from .kinds import (aperiodic, cycle, cycles_of_flow, equations_of, exponents_of, fixed_point, kinds_by_exponents,
                     returns_of, steady_state_near)
-from .orbits import Scale
+from .orbits import Scale, on_host
 
 if TYPE_CHECKING:
     from ..symbolic.types import Array
@@ -100,7 +100,8 @@ class Search:
             column = orbits.points[..., c]
             with np.errstate(invalid="ignore"):
                 extent = np.maximum(column.max(axis=1), -column.min(axis=1))
-                well &= np.isfinite(extent) if name in self.motion.angles else extent <= self.bound
+                within = np.isfinite(extent) if name in self.motion.angles else extent <= self.bound
+            well &= on_host(within)
         return well
 
     def _turn(self, numbers: Array, values: Mapping[str, Array],
@@ -136,12 +137,13 @@ class Search:
         """Features and ends of orbits, and which of these are good."""
         parts, ends, good = [], [], []
         for part in self.motion.chunks(len(numbers), self.phases):
-            orbits = self.motion.orbits({n: of[part] for n, of in values.items()}, transient, self.phases)
+            orbits = self.motion.orbits({n: of[part] for n, of in values.items()}, transient, self.phases, stay=True)
             well = self._are_good(orbits)
             self.status[numbers[part]] = orbits.status
             points = orbits.points
-            points[~well] = 0.0
-            parts.append(features_of(self.scale(points), self.tolerance, self.motion.is_map))
+            points[np.asarray(~well, like=points)] = 0.0
+            made = features_of(self.scale(points), self.tolerance, self.motion.is_map)
+            parts.append(Features(*(on_host(of) for of in made)))
             ends.append(orbits.ends)
             good.append(well)
         return Features.joined(parts), {n: np.concatenate([e[n] for e in ends]) for n in ends[0]}, np.concatenate(good)
