@@ -224,6 +224,48 @@ TEST_CASE(
     CHECK(same_results(e, expected));
 }
 
+TEST_CASE("several GPUs work while inputs are checked: bad ones in the last chunk leave all instances as they were") {
+    constexpr std::int64_t size = 800'003;
+    const bool pinned = GENERATE(false, true);
+    auto o = two_phases(0);
+    auto e = filled<drifts>(size), expected = filled<drifts>(size);
+    if (pinned) e.pin(gpu);
+    e.state(drift::x)(size - 1) = std::numeric_limits<double>::infinity();
+    the_gpu.longest_delay = 500;
+    refused([&] { myriad::solve<runge_kutta_4>(gpus, e, o); }, {"state 0 (x) is not finite in 1 of 800003"});
+    CHECK(the_gpu.under_way == 0);
+    e.state(drift::x)(size - 1) = expected.state(drift::x)(size - 1);
+    CHECK((is_as_filled(e) && myriad::host::ensemble_access::data(e).untouched));
+    const auto report = myriad::solve<runge_kutta_4>(gpus, e, o);
+    the_gpu.longest_delay = 0;
+    check_same(report, myriad::solve<runge_kutta_4>(cpu, expected, o));
+    CHECK(same_results(e, expected));
+}
+
+TEST_CASE("a time limit on several GPUs ends some instances and leaves the others done, and says so of each") {
+    constexpr std::int64_t size = 6000;
+    auto o = two_phases(10);
+    o.time_limit = 0.05;
+    the_gpu.longest_delay = 2000;  // of each of the three tasks of a chunk, so that all take longer
+    auto e = filled<drifts>(size), expected = filled<drifts>(size);
+    const auto report = myriad::solve<runge_kutta_4>(gpus, e, o);
+    the_gpu.longest_delay = 0;
+    myriad::solve<runge_kutta_4>(cpu, expected, two_phases(10));
+    CHECK(the_gpu.under_way == 0);
+    const std::int64_t left = report.count(status::interrupted);
+    CHECK((left > 0 && left < size));
+    CHECK(report.failed() == left);
+    std::int64_t seen = 0;
+    for (std::int64_t i = 0; i < size; ++i) {
+        if (e.status(i) == status::interrupted) {
+            seen += e.ended(i);
+        } else {
+            CHECK((e.status(i) == expected.status(i) && e.state(drift::x)(i) == expected.state(drift::x)(i)));
+        }
+    }
+    CHECK(seen == left);
+}
+
 TEST_CASE("several devices of a call are GPUs, and at least one is given") {
     auto e = filled<drifts>(2);
     const auto said = [&](const std::vector<myriad::device>& on) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "myriad/host/backend/arrays.hpp"
 #include "myriad/host/backend/backend.hpp"
@@ -37,6 +38,9 @@ public:
         for_each_record(arguments, add);
         cut(o, worker, copied);
     }
+    /// For GPUs of which each alone would have one of those plans: chunks of the same size, as many for each as on one
+    /// alone, so that the faster ones take more of them, but none too small.
+    explicit chunk_plan(const std::vector<chunk_plan>& alone);
 
     bool has_one_chunk() const { return largest_ == size_; }
     /// Chunks to have in flight at a time.

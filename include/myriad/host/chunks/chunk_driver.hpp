@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// `solve` on a GPU: in chunks, so that one is prepared by the host, others are copied, and one is integrated at the
-// same time.
+// `solve` on GPUs: in chunks, so that one is prepared by the host, others are copied, and one is integrated at the same
+// time, on one GPU or on several.
 #pragma once
+
+#include <vector>
 
 #include "myriad/host/backend/backend.hpp"
 #include "myriad/host/checks/data_check.hpp"
-#include "myriad/host/chunks/chunk_plan.hpp"
 #include "myriad/host/chunks/idle_engines.hpp"
 #include "myriad/host/chunks/progress_relay.hpp"
 #include "myriad/host/ensemble/ensemble_data.hpp"
@@ -15,9 +16,9 @@
 
 namespace myriad::host::inline MYRIAD_ABI {
 
-/// One call of `solve` on a GPU.
+/// One call of `solve` on GPUs. Throws `error` if an input is invalid or a GPU fails.
 template <class R>
-void solve_in_chunks(const options& o, const engine_source<R>& source, const any_arguments<R>& arguments,
+void solve_in_chunks(const options& o, const std::vector<engine_source<R>>& gpus, const any_arguments<R>& arguments,
                      ensemble_data<R>& instances, data_check<R>& check, progress_relay& relay, report_of<R>& result);
 
 }  // namespace myriad::host::inline MYRIAD_ABI
