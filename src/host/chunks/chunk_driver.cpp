@@ -115,7 +115,7 @@ private:
     /// Each GPU has a thread, the first one the caller's, which also sums up results and listens to the user. The
     /// second thread of the first one checks the inputs before it downloads.
     void run_all(const chunk_plan& plan, chunk_queue& chunks) {
-        checking_ = caller().ask([&] {
+        checking_ = caller().ask([this, plan] {
             inputs_.check_all(plan);
             begin_to_write();
         });

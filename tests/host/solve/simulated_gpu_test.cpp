@@ -497,6 +497,42 @@ TEST_CASE("pinning that fails in the middle names the ensemble as a whole, which
     CHECK(e.pinned());
 }
 
+TEST_CASE("a solver's values are on the device, where they are set without an upload and used without a download") {
+    const auto where = GENERATE(gpu, cpu);
+    myriad::solver<swing, cash_karp> s(where, 70, usual()), set_there(where, 70, usual());
+    refused([&] { s.on_device(); }, {"on_device has no instances", "call upload first"});
+    myriad::ensemble<swing> other(50);
+    fill(s.instances());
+    fill(set_there.instances());
+    fill(other, 100);
+    s.instances().state(swing::x).head(50) = other.state(swing::x);
+    s.instances().parameter(swing::drive).head(50) = other.parameter(swing::drive);
+    for (auto* const each : {&s, &set_there}) each->upload(50);
+    const auto there = set_there.on_device();
+    CHECK(there.size() == 50);
+    CHECK((there.stream() == nullptr) == (where.which() == myriad::device::kind::cpu));
+    set_there.wait();
+    for (std::int64_t i = 0; i < 50; ++i) {  // a simulated GPU's memory is the host's
+        there.state(swing::x)[i] = other.state(swing::x)(i);
+        there.parameter(swing::drive)[i] = other.parameter(swing::drive)(i);
+    }
+    for (auto* const each : {&s, &set_there}) each->integrate();
+    set_there.wait();
+    s.download();
+    const auto& expected = s.results();
+    std::int64_t same = 0;
+    for (std::int64_t i = 0; i < 50; ++i)
+        same += there.state(swing::v)[i] == expected.state(swing::v)(i) && there.t()[i] == expected.t()(i) &&
+                there.accessory(swing::highest)[i] == expected.accessory(swing::highest)(i) &&
+                there.integer_accessory(swing::impacts)[i] == expected.integer_accessory(swing::impacts)(i) &&
+                there.statuses()[i] == expected.status(i);
+    CHECK(same == 50);
+    CHECK(expected.integer_accessory(swing::impacts).head(50).maxCoeff() > 0);
+    refused([&] { there.state(2); }, {"state", "2"});
+    set_there.download();
+    CHECK(set_there.report().count(status::success) == 50);
+}
+
 TEST_CASE("a solver's bad instances are marked before they are copied") {
     auto o = usual();
     o.invalid_instances = myriad::invalid_instances::mark;
