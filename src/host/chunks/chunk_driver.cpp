@@ -72,8 +72,36 @@ public:
         for (const engine_source<R>& source : gpus) pipelines_.push_back(std::make_unique<pipeline>(source, arguments));
     }
 
+    void run(results_on_gpu<R>* stay) {
+        if (stay != nullptr && stay->fit(caller().first())) {
+            run_where_results_stay(*stay);
+        } else {
+            run_and_copy();
+        }
+        for (const auto& gpu : pipelines_) {
+            result_.kernel_seconds = std::max(result_.kernel_seconds, gpu->kernel_seconds());
+            gpu->give_back();
+        }
+    }
+
+private:
+    /// The GPU that the calling thread drives.
+    pipeline& caller() { return *pipelines_.front(); }
+
+    void run_where_results_stay(results_on_gpu<R>& stay) {
+        inputs_.check(size_);
+        engine& worker = caller().first();
+        stay.upload(worker, inputs_.past());
+        worker.integrate(arguments_);
+        wait_for(worker);
+        result_.kernel = worker.facts();
+        result_.kernel_seconds = worker.kernel_seconds();
+        stay.keep(caller().take_first(), result_);
+        progress_relay::call(&relay_, size_);
+    }
+
     /// Nothing is written to the ensemble before all of its data are checked, and each GPU has its memory.
-    void run() {
+    void run_and_copy() {
         std::vector<chunk_plan> alone;
         for (const auto& gpu : pipelines_) alone.emplace_back(options_, arguments_, gpu->first());
         const chunk_plan plan(alone);
@@ -90,26 +118,22 @@ public:
         if (are_all_done || relay_.over) progress_relay::call(&relay_, size_);
         if (options_.counting == counting::on) set_work(result_, work_before_, work_after_);
         result_.kernel = caller().first().facts();
-        for (const auto& gpu : pipelines_) {
-            result_.kernel_seconds = std::max(result_.kernel_seconds, gpu->kernel_seconds());
-            gpu->give_back();
-        }
     }
 
-private:
-    /// The GPU that the calling thread drives.
-    pipeline& caller() { return *pipelines_.front(); }
-
+    /// A single chunk needs no second thread.
     void run_one(chunk_queue& chunks) {
         begin_to_write();
         engine& worker = caller().first();
         caller().begin(worker, 0, size_, inputs_.past());
         worker.download(arguments_);
-        for (polling_backoff waiting; relay_.may_stop() && !worker.idle(); waiting.pause())
-            is_to_stop(caller(), chunks);
-        worker.wait();
+        wait_for(worker);
         caller().count_time(worker);
         chunks.bring_back(0, size_);
+    }
+    /// Until the first GPU is done with the only chunk.
+    void wait_for(engine& worker) {
+        for (polling_backoff waiting; relay_.may_stop() && !worker.idle(); waiting.pause()) is_to_stop(caller(), 0);
+        worker.wait();
     }
 
     /// Each GPU has a thread, the first one the caller's, which also sums up results and listens to the user. The
@@ -128,7 +152,8 @@ private:
             }));
         drive(caller(), plan, chunks, first);
         for (const auto& other : done)
-            for (polling_backoff waiting; !waiting.is_over(other); sum_up_results(chunks)) is_to_stop(caller(), chunks);
+            for (polling_backoff waiting; !waiting.is_over(other); sum_up_results(chunks))
+                is_to_stop(caller(), chunks.back());
         if (failure_) std::rethrow_exception(failure_);
     }
 
@@ -141,19 +166,19 @@ private:
         };
         // A new engine if too few keep the GPU busy while nothing may be downloaded yet, or null.
         const auto meanwhile = [&]() -> engine* {
-            is_to_stop(gpu, chunks);
+            is_to_stop(gpu, chunks.back());
             const bool may_hold_more = !inputs_.are_all() && options_.chunk_size == 0;
             return may_hold_more && gpu.busy_engines() < chunks_at_a_time ? gpu.further_engine(plan) : nullptr;
         };
         try {
             for (bool begun = false; next.count > 0; next = chunks.take(), begun = true) {
                 engine& worker = gpu.free_engine(meanwhile, back);
-                if (begun && is_to_stop(gpu, chunks)) break;
+                if (begun && is_to_stop(gpu, chunks.back())) break;
                 inputs_.wait_for(next.first + next.count, checking_);
                 gpu.submit(worker, next.first, next.count, inputs_.past(), checking_);  // nothing comes back if refused
                 if (is_caller) sum_up_results(chunks);
             }
-            gpu.finish([&] { is_to_stop(gpu, chunks); },
+            gpu.finish([&] { is_to_stop(gpu, chunks.back()); },
                        [&](std::int64_t begin, std::int64_t end) {
                            back(begin, end);
                            if (is_caller) sum_up_results(chunks);
@@ -164,10 +189,11 @@ private:
             has_failed_ = true;
         }
     }
-    /// Whether no further chunk is to be begun. Tells the engines what is to become of chunks under way.
-    bool is_to_stop(pipeline& gpu, const chunk_queue& chunks) {
+    /// Whether no further chunk is to be begun, with that many instances done. Tells the engines what is to become of
+    /// chunks under way.
+    bool is_to_stop(pipeline& gpu, std::int64_t done) {
         if (&gpu == &caller() && relay_.may_stop()) {
-            if (const std::int64_t done = chunks.back(); done < size_) relay_.last_done = done;
+            if (done < size_) relay_.last_done = done;
             asked_ = progress_relay::ask(&relay_);
         }
         gpu.stop(asked_);
@@ -214,12 +240,15 @@ private:
 
 template <class R>
 void solve_in_chunks(const options& o, const std::vector<engine_source<R>>& gpus, const any_arguments<R>& arguments,
-                     ensemble_data<R>& instances, data_check<R>& check, progress_relay& relay, report_of<R>& result) {
-    chunk_driver<R>(o, gpus, arguments, instances, check, relay, result).run();
+                     ensemble_data<R>& instances, data_check<R>& check, progress_relay& relay, report_of<R>& result,
+                     results_on_gpu<R>* stay) {
+    chunk_driver<R>(o, gpus, arguments, instances, check, relay, result).run(stay);
 }
 template void solve_in_chunks(const options&, const std::vector<engine_source<double>>&, const any_arguments<double>&,
-                              ensemble_data<double>&, data_check<double>&, progress_relay&, report_of<double>&);
+                              ensemble_data<double>&, data_check<double>&, progress_relay&, report_of<double>&,
+                              results_on_gpu<double>*);
 template void solve_in_chunks(const options&, const std::vector<engine_source<float>>&, const any_arguments<float>&,
-                              ensemble_data<float>&, data_check<float>&, progress_relay&, report_of<float>&);
+                              ensemble_data<float>&, data_check<float>&, progress_relay&, report_of<float>&,
+                              results_on_gpu<float>*);
 
 }  // namespace myriad::host::inline MYRIAD_ABI

@@ -163,7 +163,7 @@ solve_call<R>::solve_call(const std::vector<device>& where, const options& o, co
 }
 
 template <class R>
-void solve_call<R>::integrate(report_of<R>& result) {
+void solve_call<R>::integrate(report_of<R>& result, results_on_gpu<R>* stay) {
     const options& o = options_;
     ensemble_data<R>& instances = data_;
     progress_relay relay{o.progress, instances.size, nullptr};
@@ -191,7 +191,7 @@ void solve_call<R>::integrate(report_of<R>& result) {
         set_work(result, work_before, work());
         summarise(instances, result, instances.size);
     } else {
-        solve_in_chunks(o, model_.on_gpus, arguments(), instances, check_, relay, result);
+        solve_in_chunks(o, model_.on_gpus, arguments(), instances, check_, relay, result, stay);
         if (relay.failure) before.leave_those_begun(instances);
     }
     note_ended(result, instances, instances.size);

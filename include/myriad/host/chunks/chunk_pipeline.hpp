@@ -120,6 +120,12 @@ public:
         kernels_until_ = std::max(kernels_until_, to);
     }
     double kernel_seconds() const { return kernel_seconds_; }
+    /// The first engine, if no other call is to have it. No chunk may be under way.
+    std::unique_ptr<engine> take_first() {
+        auto taken = std::move(engines_.front());
+        engines_.erase(engines_.begin());
+        return taken;
+    }
     /// Lets later calls have the engines; only after calls without an error.
     void give_back() {
         for (auto& e : engines_) source_.give(std::move(e));
