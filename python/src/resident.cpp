@@ -4,17 +4,14 @@
 
 #include <algorithm>
 #include <array>
-#include <exception>
 #include <limits>
 #include <utility>
 
 #include "myriad/host/core/error.hpp"
-#include "myriad/host/threads/polling_backoff.hpp"
 
 namespace myriad::python {
 
 using detail::array_access;
-using detail::array_kind;
 
 namespace {
 
@@ -28,8 +25,10 @@ gpu::result launch_over(const void* kernel, std::int64_t size, void** arguments,
 }  // namespace
 
 template <class R>
-resident<R>::resident(const library& kernel, const host::called_model<R>& model, const host::solve_call<R>& call)
-    : program_(*kernel.gpu()), source_(model.on_gpus.front()), call_(call.prepared()) {}
+resident<R>::resident(const library& kernel, const host::called_model<R>& model, const host::solve_call<R>& call,
+                      ensemble<R>& instances, const options& o)
+    : program_(*kernel.gpu()), source_(model.on_gpus.front()), call_(call.prepared()), instances_(instances),
+      marks_invalid_(o.invalid_instances == invalid_instances::mark) {}
 
 template <class R>
 resident<R>::~resident() {
@@ -44,40 +43,32 @@ resident<R>::~resident() {
 }
 
 template <class R>
-std::size_t resident<R>::bytes_per_instance() const {
-    detail::any_arguments<R> all = call_->arguments;
-    std::size_t bytes = 0;
-    const auto add = [&](auto* array, std::int64_t components, array_access, array_kind) {
-        bytes += static_cast<std::size_t>(components) * sizeof(*array);
-    };
-    for_each_array(all, add);
-    for_each_record(all, add);
-    return bytes;
-}
-
-template <class R>
-bool resident<R>::fits(const ensemble<R>& instances) {
+bool resident<R>::fit(const cuda::engine<R>& worker) {
     constexpr std::int64_t many = 16;
-    engine_.reset(static_cast<cuda::study_engine<R>*>(source_.take().release()));
-    const auto room = engine_->affordable(static_cast<std::int64_t>(bytes_per_instance()));
-    if (instances.data.size <= (instances.on_device.empty() ? room / many : room)) return true;
-    source_.give(std::move(engine_));
+    const auto room = worker.affordable(detail::bytes_per_instance(call_->arguments));
+    const bool has_inputs = !instances_.on_device.empty();
+    if (instances_.data.size <= (has_inputs ? room : room / many)) return true;
+    require(!has_inputs,
+            "the sweep has arrays on the GPU, whose memory does not suffice to "
+            "integrate all of it at once",
+            host::cure, "divide it into smaller parts");
+    instances_.samples.clear();
     return false;
 }
 
 template <class R>
-void resident<R>::take_inputs(const ensemble<R>& instances, bool mark_invalid) {
-    if (instances.on_device.empty()) return;
-    require(!mark_invalid, "arrays on a GPU cannot be marked where they are not finite", host::cure,
+void resident<R>::take_inputs(study_engine& worker) {
+    if (instances_.on_device.empty()) return;
+    require(!marks_invalid_, "arrays on a GPU cannot be marked where they are not finite", host::cure,
             "copy them to the host, or give invalid=\"refuse\"");
     constexpr unsigned long long none = std::numeric_limits<unsigned long long>::max();
     const device_program::kernels& all = program_.on(number());
-    const std::int64_t size = instances.data.size;
-    const auto stream = engine_->in_stream();
+    const std::int64_t size = instances_.data.size;
+    const auto stream = worker.in_stream();
     const cuda::current_device here(number());
     scratch_.reserve(sizeof(host::work_count));  // for `work` too, as to get memory anew takes longer than to copy
-    for (const device_input<R>& input : instances.on_device) {
-        std::byte* const to = engine_->find(call_->arguments, input.component).address;
+    for (const device_input<R>& input : instances_.on_device) {
+        std::byte* const to = worker.find(call_->arguments, input.component).address;
         MYRIAD_GPU_CALL(
             gpu::copy(to, input.values, static_cast<std::size_t>(size) * sizeof(R), gpu::direction::on_device, stream));
         MYRIAD_GPU_CALL(gpu::fill(scratch_.data(), 0xff, sizeof none, stream));
@@ -86,30 +77,17 @@ void resident<R>::take_inputs(const ensemble<R>& instances, bool mark_invalid) {
         void* arguments[] = {&values, &count, &first};
         cuda::check(launch_over(all.find_not_finite, size, arguments, stream), "the check of the inputs");
         unsigned long long found = none;
-        engine_->copy_to_host(&found, static_cast<const std::byte*>(scratch_.data()), sizeof found);
+        worker.copy_to_host(&found, static_cast<const std::byte*>(scratch_.data()), sizeof found);
         if (found == none) continue;
         R value{};
-        engine_->copy_to_host(&value, to + found * sizeof(R), sizeof value);
-        const auto& d = instances.data;
+        worker.copy_to_host(&value, to + found * sizeof(R), sizeof value);
+        const auto& d = instances_.data;
         const std::int64_t in_states = input.component - d.state.data(), n_states = size * d.shape->n_state;
         const bool is_state = in_states >= 0 && in_states < n_states;
         const auto number = static_cast<int>((is_state ? in_states : input.component - d.parameter.data()) / size);
         throw error(message(is_state ? d.shape->state(*d.shape, number) : d.shape->parameter(*d.shape, number), " is ",
                             value, " in instance ", found, ", and must be finite"));
     }
-}
-
-template <class R>
-void resident<R>::wait(const options& o, std::int64_t size, clock::time_point deadline) {
-    host::progress_relay relay{o.progress, size, nullptr};
-    relay.deadline = deadline;
-    auto told = detail::stop_request::none;
-    for (host::polling_backoff waiting; !engine_->idle(); waiting.pause()) {
-        const auto asked = host::progress_relay::ask(&relay);
-        if (ends_kernels(asked) && asked != std::exchange(told, asked)) engine_->stop(asked);
-    }
-    host::progress_relay::call(&relay, size);
-    if (relay.failure) std::rethrow_exception(relay.failure);
 }
 
 template <class R>
@@ -133,24 +111,18 @@ host::work_count resident<R>::work() {
 }
 
 template <class R>
-void resident<R>::integrate(ensemble<R>& instances, const options& o, host::data_check<R>& check,
-                            report_of<R>& result) {
-    const auto begin = clock::now();
-    const auto deadline = host::progress_relay::deadline_in(o.time_limit);
-    auto& data = instances.data;
-    for (const device_input<R>& input : instances.on_device) given_there_.insert(input.component);
-    if (!check.passes(0, data.size)) check.run();
-    const auto past = data.untouched ? cuda::past::none : cuda::past::kept;  // kept where some are marked
-    engine_->upload(call_->arguments, 0, data.size, past,
-                    [&](const void* component) { return given_there_.count(component) > 0; });
-    take_inputs(instances, o.invalid_instances == invalid_instances::mark);
-    engine_->integrate(call_->arguments);
-    std::exception_ptr failure;
-    try {
-        wait(o, data.size, deadline);
-    } catch (...) {
-        failure = std::current_exception();
-    }
+void resident<R>::upload(cuda::engine<R>& worker, cuda::past of_instances) {
+    auto& here = static_cast<study_engine&>(worker);
+    for (const device_input<R>& input : instances_.on_device) given_there_.insert(input.component);
+    here.upload(call_->arguments, 0, instances_.data.size, of_instances,
+                [&](const void* component) { return given_there_.count(component) > 0; });
+    take_inputs(here);
+}
+
+template <class R>
+void resident<R>::keep(std::unique_ptr<cuda::engine<R>> worker, report_of<R>& result) {
+    engine_.reset(static_cast<study_engine*>(worker.release()));
+    auto& data = instances_.data;
     bring(data.status.data(), static_cast<std::size_t>(data.size));
     host::summarise(data, result, data.size);
     if (result.first_failed >= 0) {  // whose values the report has
@@ -169,9 +141,6 @@ void resident<R>::integrate(ensemble<R>& instances, const options& o, host::data
         host::summarise(data, result, data.size);
     }
     host::set_work(result, {}, work());
-    result.kernel = engine_->facts();
-    result.kernel_seconds = engine_->kernel_seconds();
-    host::end_call(result, data, o, call_->arguments.max_steps, device::cuda(number()).name(), begin, failure);
 }
 
 template <class R>

@@ -9,9 +9,8 @@
 #include <set>
 
 #include "device_library.hpp"
-#include "myriad/host/checks/data_check.hpp"
 #include "myriad/host/chunks/idle_engines.hpp"
-#include "myriad/host/chunks/progress_relay.hpp"
+#include "myriad/host/chunks/results_on_gpu.hpp"
 #include "myriad/host/options/options.hpp"
 #include "myriad/host/report/report_of.hpp"
 #include "myriad/host/solve/solve_call.hpp"
@@ -21,19 +20,22 @@ namespace myriad::python {
 
 /// One call, in one chunk. Its engine, with the memory on the device, is its own for as long as it lives.
 template <class R>
-class resident {
+class resident final : public host::results_on_gpu<R> {
 public:
     /// The memory of the arguments is the ensemble's, which lives longer, and the call's.
-    resident(const library& kernel, const host::called_model<R>& model, const host::solve_call<R>& call);
+    resident(const library& kernel, const host::called_model<R>& model, const host::solve_call<R>& call,
+             ensemble<R>& instances, const options& o);
     resident(const resident&) = delete;
     resident& operator=(const resident&) = delete;
     ~resident();
 
     /// Whether the device has room for all instances many times over, so that results may stay there, or inputs are
-    /// there already and it has room for them once.
-    bool fits(const ensemble<R>& instances);
-    /// Integrates, and reports; the results are on the device. Throws `error` if inputs are invalid.
-    void integrate(ensemble<R>& instances, const options& o, host::data_check<R>& check, report_of<R>& result);
+    /// there already and it has room for them once. Throws `error` if they are, and it has not.
+    bool fit(const cuda::engine<R>& worker) override;
+    void upload(cuda::engine<R>& worker, cuda::past of_instances) override;
+    void keep(std::unique_ptr<cuda::engine<R>> worker, report_of<R>& result) override;
+    /// Whether results are here, and not in the ensemble.
+    bool has_results() const { return engine_ != nullptr; }
 
     /// Copies to the host, unless that is done, what belongs into the ensemble's memory there, such as a component.
     void bring(const void* values, std::size_t bytes);
@@ -46,17 +48,17 @@ public:
     int number() const { return source_.how.device; }
 
 private:
-    using clock = host::progress_relay::clock;
+    using study_engine = cuda::study_engine<R>;  // of which all engines of a library are
 
-    std::size_t bytes_per_instance() const;
-    void take_inputs(const ensemble<R>& instances, bool mark_invalid);
-    void wait(const options& o, std::int64_t size, clock::time_point deadline);
+    void take_inputs(study_engine& worker);
     host::work_count work();
 
     device_program& program_;
     host::engine_source<R> source_;
     std::shared_ptr<host::prepared_call<R>> call_;
-    std::unique_ptr<cuda::study_engine<R>> engine_;
+    ensemble<R>& instances_;  // outlives the call alone
+    const bool marks_invalid_;
+    std::unique_ptr<study_engine> engine_;
     std::set<const void*> given_there_, brought_;
     cuda::device_memory scratch_;
 };

@@ -202,25 +202,17 @@ std::unique_ptr<report<R>> solve(const std::vector<placed_kernel>& on, ensemble<
     auto result = std::make_unique<report<R>>();
     auto& data = instances.data;
     // Samples that stay on the GPU are set here when they are copied: their memory, which may be large, is not touched.
-    const bool may_stay = on_gpu && on.size() == 1 && results == results_are::anywhere;
+    const bool may_stay =
+        on_gpu && on.size() == 1 && (results == results_are::anywhere || !instances.on_device.empty());
     host::solve_call<R> call(where, o, model, data, instances.samples, result->records,
                              may_stay ? host::new_samples::unset : host::new_samples::cleared);
+    const auto gpu = may_stay ? std::make_shared<resident<R>>(*on.front().kernel, model, call, instances, o) : nullptr;
     try {
-        if (auto gpu = may_stay ? std::make_shared<resident<R>>(*on.front().kernel, model, call) : nullptr;
-            gpu != nullptr && gpu->fits(instances)) {
-            instances.gpu = result->gpu = gpu;
-            gpu->integrate(instances, o, call.check(), *result);
-        } else {
-            require(instances.on_device.empty(),
-                    "the sweep has arrays on the GPU, whose memory does not suffice to "
-                    "integrate all of it at once",
-                    host::cure, "divide it into smaller parts");
-            if (may_stay) instances.samples.clear();
-            call.integrate(*result);
-        }
+        call.integrate(*result, gpu.get());
     } catch (const interruption&) {
         result->interrupted = true;
     }
+    if (gpu != nullptr && gpu->has_results()) instances.gpu = result->gpu = gpu;
     const detail::tangent_places& tangents = model.facts.tangents;
     if (instances.gpu != nullptr && !result->interrupted &&
         host::examines_stiffness<R>(*result, data.size, o, model.functions))

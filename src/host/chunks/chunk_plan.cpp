@@ -27,6 +27,17 @@ void chunk_plan::cut(const options& o, const cuda::any_engine& worker, std::int6
     at_a_time_ = chunks_at_a_time;
 }
 
+chunk_plan::chunk_plan(const std::vector<chunk_plan>& alone) : chunk_plan(alone.front()) {
+    if (alone.size() == 1) return;
+    constexpr std::int64_t worthwhile = worth_chunks / 2, most = 8;
+    const auto gpus = static_cast<std::int64_t>(alone.size());
+    const std::int64_t chunks = gpus * std::clamp<std::int64_t>(size_ / (gpus * worthwhile), 1, most);
+    largest_ = (size_ + chunks - 1) / chunks;
+    for (const chunk_plan& plan : alone) largest_ = std::min(largest_, plan.largest_);
+    smallest_ = largest_;
+    at_a_time_ = std::clamp<std::int64_t>(size_ / (gpus * largest_), 1, chunks_at_a_time);
+}
+
 std::int64_t chunk_plan::count_from(std::int64_t first) const {
     const std::int64_t left = size_ - first;
     const std::int64_t count = std::min(left, std::clamp(std::min(first, left / 2), smallest_, largest_));

@@ -12,9 +12,8 @@
 
 #include "myriad/host/checks/consistency.hpp"
 #include "myriad/host/checks/event_tolerances.hpp"
-#include "myriad/host/chunks/chunked_solve.hpp"
+#include "myriad/host/chunks/chunk_driver.hpp"
 #include "myriad/host/chunks/progress_relay.hpp"
-#include "myriad/host/chunks/several_gpus.hpp"
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/report/stiffness.hpp"
 #include "myriad/host/report/tangent_note.hpp"
@@ -164,7 +163,7 @@ solve_call<R>::solve_call(const std::vector<device>& where, const options& o, co
 }
 
 template <class R>
-void solve_call<R>::integrate(report_of<R>& result) {
+void solve_call<R>::integrate(report_of<R>& result, results_on_gpu<R>* stay) {
     const options& o = options_;
     ensemble_data<R>& instances = data_;
     progress_relay relay{o.progress, instances.size, nullptr};
@@ -192,11 +191,7 @@ void solve_call<R>::integrate(report_of<R>& result) {
         set_work(result, work_before, work());
         summarise(instances, result, instances.size);
     } else {
-        if (model_.on_gpus.size() == 1) {
-            solve_in_chunks(o, model_.on_gpus.front(), arguments(), instances, check_, relay, result);
-        } else {
-            solve_on_several_gpus(o, model_.on_gpus, arguments(), instances, check_, relay, result);
-        }
+        solve_in_chunks(o, model_.on_gpus, arguments(), instances, check_, relay, result, stay);
         if (relay.failure) before.leave_those_begun(instances);
     }
     note_ended(result, instances, instances.size);

@@ -76,14 +76,8 @@ std::vector<statement> device_instances<R>::notes(std::int64_t count) {
 }
 template <class R>
 std::int64_t device_instances<R>::affordable() const {
-    std::int64_t bytes = 64;  // for what is drawn again, gathered and scheduled
-    const auto add = [&](auto* array, std::int64_t components, auto...) {
-        bytes += components * static_cast<std::int64_t>(sizeof(*array));
-    };
-    auto arguments = call_.arguments;  // a copy
-    for_each_array(arguments, add);
-    for_each_record(arguments, add);
-    return engine_->affordable(2 * bytes);
+    constexpr std::int64_t more = 64;  // for what is drawn again, gathered and scheduled
+    return engine_->affordable(2 * (detail::bytes_per_instance(call_.arguments) + more));
 }
 template <class R>
 template <class Work>

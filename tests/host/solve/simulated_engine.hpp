@@ -132,6 +132,20 @@ public:
             for (const rows& r : pinned) r.to_host(memory_.get());
         });
     }
+    myriad::cuda::place_on_device find(const arguments& host, const void* value) override {
+        const turn mine(taken_);
+        myriad::cuda::place_on_device found;
+        walk(host, count_, [&]<class T>(T* array, std::size_t at, std::int64_t components, access how, kind) {
+            for (std::int64_t c = 0; c < components; ++c) {
+                const T* const first = array + c * host.size + first_;
+                const auto* const wanted = static_cast<const T*>(value);
+                if (!std::less<>{}(wanted, first) && std::less<>{}(wanted, first + count_))
+                    found = {&memory_[at] + bytes_of(array, c * count_ + (wanted - first)), how};
+            }
+        });
+        return found;
+    }
+    void* native_stream() override { return this; }
     void generate(const arguments& host, std::shared_ptr<const myriad::cuda::generation> how, std::int64_t first,
                   std::int64_t count) override {
         const turn mine(taken_, call::upload);

@@ -224,6 +224,48 @@ TEST_CASE(
     CHECK(same_results(e, expected));
 }
 
+TEST_CASE("several GPUs work while inputs are checked: bad ones in the last chunk leave all instances as they were") {
+    constexpr std::int64_t size = 800'003;
+    const bool pinned = GENERATE(false, true);
+    auto o = two_phases(0);
+    auto e = filled<drifts>(size), expected = filled<drifts>(size);
+    if (pinned) e.pin(gpu);
+    e.state(drift::x)(size - 1) = std::numeric_limits<double>::infinity();
+    the_gpu.longest_delay = 500;
+    refused([&] { myriad::solve<runge_kutta_4>(gpus, e, o); }, {"state 0 (x) is not finite in 1 of 800003"});
+    CHECK(the_gpu.under_way == 0);
+    e.state(drift::x)(size - 1) = expected.state(drift::x)(size - 1);
+    CHECK((is_as_filled(e) && myriad::host::ensemble_access::data(e).untouched));
+    const auto report = myriad::solve<runge_kutta_4>(gpus, e, o);
+    the_gpu.longest_delay = 0;
+    check_same(report, myriad::solve<runge_kutta_4>(cpu, expected, o));
+    CHECK(same_results(e, expected));
+}
+
+TEST_CASE("a time limit on several GPUs ends some instances and leaves the others done, and says so of each") {
+    constexpr std::int64_t size = 6000;
+    auto o = two_phases(10);
+    o.time_limit = 0.05;
+    the_gpu.longest_delay = 2000;  // of each of the three tasks of a chunk, so that all take longer
+    auto e = filled<drifts>(size), expected = filled<drifts>(size);
+    const auto report = myriad::solve<runge_kutta_4>(gpus, e, o);
+    the_gpu.longest_delay = 0;
+    myriad::solve<runge_kutta_4>(cpu, expected, two_phases(10));
+    CHECK(the_gpu.under_way == 0);
+    const std::int64_t left = report.count(status::interrupted);
+    CHECK((left > 0 && left < size));
+    CHECK(report.failed() == left);
+    std::int64_t seen = 0;
+    for (std::int64_t i = 0; i < size; ++i) {
+        if (e.status(i) == status::interrupted) {
+            seen += e.ended(i);
+        } else {
+            CHECK((e.status(i) == expected.status(i) && e.state(drift::x)(i) == expected.state(drift::x)(i)));
+        }
+    }
+    CHECK(seen == left);
+}
+
 TEST_CASE("several devices of a call are GPUs, and at least one is given") {
     auto e = filled<drifts>(2);
     const auto said = [&](const std::vector<myriad::device>& on) {
@@ -453,6 +495,42 @@ TEST_CASE("pinning that fails in the middle names the ensemble as a whole, which
     CHECK(myriad::solve<runge_kutta_4>(gpu, e, two_phases(0)).failed() == 0);
     e.pin(gpu);  // pinned memory is not pinned again
     CHECK(e.pinned());
+}
+
+TEST_CASE("a solver's values are on the device, where they are set without an upload and used without a download") {
+    const auto where = GENERATE(gpu, cpu);
+    myriad::solver<swing, cash_karp> s(where, 70, usual()), set_there(where, 70, usual());
+    refused([&] { s.on_device(); }, {"on_device has no instances", "call upload first"});
+    myriad::ensemble<swing> other(50);
+    fill(s.instances());
+    fill(set_there.instances());
+    fill(other, 100);
+    s.instances().state(swing::x).head(50) = other.state(swing::x);
+    s.instances().parameter(swing::drive).head(50) = other.parameter(swing::drive);
+    for (auto* const each : {&s, &set_there}) each->upload(50);
+    const auto there = set_there.on_device();
+    CHECK(there.size() == 50);
+    CHECK((there.stream() == nullptr) == (where.which() == myriad::device::kind::cpu));
+    set_there.wait();
+    for (std::int64_t i = 0; i < 50; ++i) {  // a simulated GPU's memory is the host's
+        there.state(swing::x)[i] = other.state(swing::x)(i);
+        there.parameter(swing::drive)[i] = other.parameter(swing::drive)(i);
+    }
+    for (auto* const each : {&s, &set_there}) each->integrate();
+    set_there.wait();
+    s.download();
+    const auto& expected = s.results();
+    std::int64_t same = 0;
+    for (std::int64_t i = 0; i < 50; ++i)
+        same += there.state(swing::v)[i] == expected.state(swing::v)(i) && there.t()[i] == expected.t()(i) &&
+                there.accessory(swing::highest)[i] == expected.accessory(swing::highest)(i) &&
+                there.integer_accessory(swing::impacts)[i] == expected.integer_accessory(swing::impacts)(i) &&
+                there.statuses()[i] == expected.status(i);
+    CHECK(same == 50);
+    CHECK(expected.integer_accessory(swing::impacts).head(50).maxCoeff() > 0);
+    refused([&] { there.state(2); }, {"state", "2"});
+    set_there.download();
+    CHECK(set_there.report().count(status::success) == 50);
 }
 
 TEST_CASE("a solver's bad instances are marked before they are copied") {

@@ -160,24 +160,22 @@ public:
         }
     }
 
-    /// The device's address of a value in one of the arrays of the arguments, of which all instances were uploaded
-    /// last, and how kernels use the array; null if it is in none of them.
-    struct place_on_device {
-        std::byte* address = nullptr;
-        array_access access = array_access::read;
-    };
-    place_on_device find(const arguments& host, const void* value) {
+    place_on_device find(const arguments& host, const void* value) override {
         place_on_device found;
-        const auto look = [&](auto*& array, auto* on_device, std::int64_t components, array_access access, array_kind) {
-            const auto offset = static_cast<const std::byte*>(value) - reinterpret_cast<const std::byte*>(array);
-            if (offset >= 0 && offset < static_cast<std::ptrdiff_t>(bytes_of(array, components * count_)))
-                found = {reinterpret_cast<std::byte*>(on_device) + offset, access};
+        const auto look = [&]<class T>(T*& array, auto* on_device, std::int64_t components, array_access access,
+                                       array_kind) {
+            const auto bytes = static_cast<const std::byte*>(value) - reinterpret_cast<const std::byte*>(array);
+            const auto values = static_cast<std::int64_t>(bytes) / static_cast<std::int64_t>(sizeof(T));
+            const std::int64_t component = values / host.size, instance = values % host.size - first_;
+            if (bytes >= 0 && component < components && instance >= 0 && instance < count_)
+                found = {reinterpret_cast<std::byte*>(on_device + component * count_ + instance), access};
         };
         arguments all = host;
         walk(all, look);
         walk_records(all, look);
         return found;
     }
+    void* native_stream() override { return static_cast<void*>(stream_.get()); }
     /// Copies from this device's memory to the host's, and waits.
     void copy_to_host(void* to, const std::byte* from, std::size_t bytes) {
         const current_device here(device_);

@@ -128,4 +128,16 @@ void for_each_record(any_arguments<R>& a, Visit&& visit) {
     visit_array(a.record.integers, a.integer_record_columns);
 }
 
+/// The bytes that each instance takes in all of these.
+template <class R>
+std::int64_t bytes_per_instance(any_arguments<R> a) {
+    std::int64_t bytes = 0;
+    const auto add = [&](auto* array, std::int64_t components, auto...) {
+        bytes += components * static_cast<std::int64_t>(sizeof(*array));
+    };
+    for_each_array(a, add);
+    for_each_record(a, add);
+    return bytes;
+}
+
 }  // namespace myriad::detail

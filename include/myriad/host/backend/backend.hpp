@@ -120,6 +120,12 @@ struct device_reduction {
     }
 };
 
+/// Where an engine has a value of the host's arrays, and how kernels use it.
+struct place_on_device {
+    std::byte* address = nullptr;  ///< null if it is not there
+    array_access access = array_access::read;
+};
+
 /// One chunk of an ensemble on one CUDA device, with its memory and its stream. All but the constructor, `wait`, and
 /// uploads of host memory that is not pinned, return before the work is done; work is done in the order of submission.
 /// Downloaded data are on the host after the next `wait`, not before. Only one thread at a time may use an engine, but
@@ -143,6 +149,11 @@ public:
     /// `host.record`. Components for which `wanted(kind, component)` is false are left out.
     virtual void download(const any_arguments<R>& host, bool (*wanted)(void*, array_kind, std::int64_t) = nullptr,
                           void* context = nullptr) = 0;
+
+    /// The place of a value of the chunk that was uploaded last, whose components are contiguous on the device.
+    virtual place_on_device find(const any_arguments<R>& host, const void* value) = 0;
+    /// The stream that work is submitted to, as the backend has it.
+    virtual void* native_stream() = 0;
 
     /// Sets a chunk of instances without a past.
     virtual void generate(const any_arguments<R>& host, std::shared_ptr<const generation> how, std::int64_t first,

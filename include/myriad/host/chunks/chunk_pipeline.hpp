@@ -9,10 +9,12 @@
 #include <deque>
 #include <future>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "myriad/host/backend/backend.hpp"
+#include "myriad/host/chunks/chunk_plan.hpp"
 #include "myriad/host/chunks/idle_engines.hpp"
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/threads/polling_backoff.hpp"
@@ -35,27 +37,29 @@ public:
     }
 
     engine& first() { return *engines_.front(); }
-    std::int64_t engine_count() const { return static_cast<std::int64_t>(engines_.size()); }
     std::int64_t busy_engines() const {
         return std::count_if(engines_.begin(), engines_.end(), [](const auto& e) { return !e->idle(); });
     }
-    /// Another one, with memory for so many instances. Throws `error` if there is none.
-    engine& add_engine(std::int64_t largest) {
-        auto another = source_.take();
-        another->reserve(arguments_, largest);
-        engines_.push_back(std::move(another));
-        return *engines_.back();
-    }
-    /// The same while chunks are under way, which go on without it: null if there is no memory for it, and from then
-    /// on.
-    engine* further_engine(std::int64_t largest) {
-        if (is_full_) return nullptr;
-        try {
-            return &add_engine(largest);
-        } catch (const error&) {  // another program has taken the memory meanwhile
-            is_full_ = true;
-            return nullptr;
+    /// Takes memory for the chunks that a plan has in flight. Throws `error` if there is none for one of them, or for
+    /// all if `all` are asked for.
+    void reserve(const chunk_plan& plan, bool all) {
+        first().reserve(arguments_, plan.largest());
+        while (engine_count() < plan.at_a_time()) {
+            if (all) {
+                add_engine(plan.largest());
+            } else if (try_engine(plan.largest()) == nullptr) {
+                return;
+            }
         }
+    }
+    /// Another engine while chunks are under way, which go on without it: null if there are many, if less than half of
+    /// the remaining memory would be left free, or if there is no memory, and from then on.
+    engine* further_engine(const chunk_plan& plan) {
+        if (!most_engines_) {
+            const std::int64_t fit = first().affordable(plan.bytes_per_instance()) / (2 * plan.largest());
+            most_engines_ = std::min(most_chunks_held, engine_count() + fit);
+        }
+        return engine_count() < *most_engines_ ? try_engine(plan.largest()) : nullptr;
     }
     /// Has the second thread do something before the downloads.
     template <class Work>
@@ -116,6 +120,12 @@ public:
         kernels_until_ = std::max(kernels_until_, to);
     }
     double kernel_seconds() const { return kernel_seconds_; }
+    /// The first engine, if no other call is to have it. No chunk may be under way.
+    std::unique_ptr<engine> take_first() {
+        auto taken = std::move(engines_.front());
+        engines_.erase(engines_.begin());
+        return taken;
+    }
     /// Lets later calls have the engines; only after calls without an error.
     void give_back() {
         for (auto& e : engines_) source_.give(std::move(e));
@@ -123,6 +133,23 @@ public:
     }
 
 private:
+    std::int64_t engine_count() const { return static_cast<std::int64_t>(engines_.size()); }
+    engine& add_engine(std::int64_t largest) {
+        auto another = source_.take();
+        another->reserve(arguments_, largest);
+        engines_.push_back(std::move(another));
+        return *engines_.back();
+    }
+    engine* try_engine(std::int64_t largest) {
+        if (is_full_) return nullptr;
+        try {
+            return &add_engine(largest);
+        } catch (const error&) {  // another program has taken the memory meanwhile
+            is_full_ = true;
+            return nullptr;
+        }
+    }
+
     /// A chunk in flight.
     struct part {
         std::int64_t begin, end;
@@ -171,6 +198,7 @@ private:
     std::deque<part> under_way_;
     stop_request told_ = stop_request::none;  // to the engines
     bool is_full_ = false;                    // there is no memory for further engines
+    std::optional<std::int64_t> most_engines_;
     void* clock_ = nullptr;
     double kernel_seconds_ = 0, kernels_until_ = 0;
     pooled_worker background_;  // destroyed first: it uses all of the above

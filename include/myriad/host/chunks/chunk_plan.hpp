@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "myriad/host/backend/arrays.hpp"
 #include "myriad/host/backend/backend.hpp"
@@ -27,16 +28,17 @@ public:
     template <class R>
     chunk_plan(const options& o, any_arguments<R> arguments, const cuda::any_engine& worker)
         : chunk_plan(arguments.size) {
-        std::int64_t copied = 0;
+        bytes_ = detail::bytes_per_instance(arguments);
+        std::int64_t back = 0;
         const auto add = [&](auto* array, std::int64_t components, array_access access, array_kind) {
-            const auto all = components * static_cast<std::int64_t>(sizeof(*array));
-            bytes_ += all;
-            copied += access == array_access::update ? 2 * all : all;
+            if (access == array_access::update) back += components * static_cast<std::int64_t>(sizeof(*array));
         };
         for_each_array(arguments, add);
-        for_each_record(arguments, add);
-        cut(o, worker, copied);
+        cut(o, worker, bytes_ + back);
     }
+    /// For GPUs of which each alone would have one of those plans: chunks of the same size, as many for each as on one
+    /// alone, so that the faster ones take more of them, but none too small.
+    explicit chunk_plan(const std::vector<chunk_plan>& alone);
 
     bool has_one_chunk() const { return largest_ == size_; }
     /// Chunks to have in flight at a time.

@@ -13,6 +13,7 @@
 #include "myriad/host/checks/data_check.hpp"
 #include "myriad/host/checks/instance_functions.hpp"
 #include "myriad/host/chunks/idle_engines.hpp"
+#include "myriad/host/chunks/results_on_gpu.hpp"
 #include "myriad/host/ensemble/ensemble_data.hpp"
 #include "myriad/host/ensemble/sample_data.hpp"
 #include "myriad/host/memory/memory_need.hpp"
@@ -74,14 +75,13 @@ public:
                sample_data<R>& samples, record_data<R>& records, new_samples are = new_samples::cleared);
 
     /// Integrates on the devices, and reports. Throws `error` if an input is invalid, and what the progress function
-    /// throws.
-    void integrate(report_of<R>& result);
+    /// throws. If `stay` is not null, results stay on the GPU, the only device, where they fit.
+    void integrate(report_of<R>& result, results_on_gpu<R>* stay = nullptr);
     /// Adds the notes that follow from what is left in the ensemble; of a call that was `cut_short`, only the others.
     void add_notes(report_of<R>& result, bool cut_short = false) const;
 
     any_arguments<R>& arguments() { return prepared_->arguments; }
     std::shared_ptr<prepared_call<R>> prepared() const { return prepared_; }
-    data_check<R>& check() { return check_; }
 
 private:
     /// The ensemble, once the options are checked.

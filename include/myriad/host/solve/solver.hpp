@@ -16,6 +16,7 @@
 #include "myriad/host/options/option_checks.hpp"
 #include "myriad/host/options/options.hpp"
 #include "myriad/host/report/report.hpp"
+#include "myriad/host/solve/device_arrays.hpp"
 #include "myriad/host/solve/prepared_call.hpp"
 #include "myriad/host/solve/solve.hpp"
 #include "myriad/host/threads/default_arithmetic.hpp"
@@ -194,6 +195,17 @@ public:
 #undef MYRIAD_CHECK_KIND
         if (engine_) engine_->download(prepared_.arguments, &is_chosen, const_cast<components*>(&chosen));
         if (results_ == held::on_device) results_ = held::partly_on_host;
+    }
+
+    /// Where the device has the values, for kernels and libraries of your own: results that are used there need no
+    /// download, and states, parameters and accessories may be set there, after `upload` and before `integrate`, which
+    /// does not check them. Does not wait: submit your work to its stream, or call `wait` before. Throws `error` before
+    /// an `upload`.
+    device_arrays<Model, R> on_device() {
+        const auto claim = take();
+        require_memory();
+        require(downloadable_, "on_device has no instances", host::cure, "call upload first");
+        return {data(), count_, prepared_.arguments, engine_.get()};
     }
 
     /// Waits for all work submitted to this solver. Throws `error` if any of it failed.
