@@ -15,6 +15,7 @@
 #include "myriad/kernel/methods/rosenbrock_23.hpp"
 #include "myriad/kernel/methods/runge_kutta_4.hpp"
 #include "myriad/kernel/methods/sra1.hpp"
+#include "myriad/kernel/methods/sriw1.hpp"
 #include "myriad/kernel/methods/stochastic_heun.hpp"
 #include "myriad/kernel/methods/tsitouras_5.hpp"
 #include "myriad/kernel/methods/verner_7.hpp"

@@ -64,6 +64,9 @@ def test_a_path_is_that_of_the_solution_and_the_same_for_all_steps_and_models():
     milstein = [error_of(solved(diagonal(), 2000, "milstein", start={x: 1, y: 2}, step=h, noise_step=1 / 64), path, 1)
                 for h in (1 / 16, 1 / 256)]
     assert 12 < milstein[0] / milstein[1] < 20 and milstein[1] < 3e-3
+    sriw1 = [error_of(solved(diagonal(), 2000, "sriw1", start={x: 1, y: 2}, step=h, noise_step=1 / 64), path, 1)
+             for h in (1 / 16, 1 / 64)]
+    assert 6.5 < sriw1[0] / sriw1[1] < 9.5 and sriw1[1] < 1e-3
 
 
 def test_an_ornstein_uhlenbeck_process_has_its_mean_and_variance():
@@ -278,7 +281,7 @@ many = my.model({x: 0}, noise={x: {f"W{i}": 1 for i in range(257)}})
 @pytest.mark.parametrize("model, more, said", [
     (diagonal(), dict(step=None), "euler_maruyama takes fixed steps: give step="),
     (diagonal(), dict(method="tsitouras_5"), 'the model has noise, which tsitouras_5 would ignore: give '
-     'method="euler_maruyama", "milstein", "stochastic_heun" or "sra1"'),
+     'method="euler_maruyama", "milstein", "stochastic_heun", "sra1" or "sriw1"'),
     (diagonal(), dict(method="rodas_5p"), "the model has noise, which rodas_5p would ignore"),
     (diagonal(), dict(method="em"), "there is no method 'em': use \"euler_maruyama\""),
     (diagonal(), dict(control="pi_control"), "euler_maruyama takes fixed steps and has no step-size control"),
@@ -290,6 +293,9 @@ many = my.model({x: 0}, noise={x: {f"W{i}": 1 for i in range(257)}})
     (shared_noise(), dict(method="milstein"), "milstein takes a Wiener process for each state, and the model names "
      "processes, which states may share: give method=\"euler_maruyama\""),
     (crossed, dict(method="milstein"), "whose factor of a state depends on no other state, and that of x depends on y"),
+    (crossed, dict(method="sriw1"), "sriw1 takes noise whose factor of a state depends on no other state"),
+    (shared_noise(), dict(method="sriw1"), "sriw1 takes a Wiener process for each state"),
+    (diagonal(), dict(method="sri1"), "there is no method 'sri1': use \"sriw1\""),
     (diagonal(), dict(method="sra1"), "sra1 takes noise that depends on no state, and that of the model depends on x"),
     (many, {}, "the model has 257 Wiener processes, and there may be 256 in double precision"),
     (diagonal(), dict(free=[k]), "the model has noise, and derivatives along its paths are not there yet"),
@@ -364,8 +370,8 @@ def test_methods_for_noise_are_those_of_the_library():
         if taken := re.search(r"constexpr noise_taken noise = noise_taken::(\w+);", header.read_text("utf-8")):
             found[header.stem] = taken[1]
     assert set(found) == set(methods.stochastic) < set(my.methods)
-    assert methods.additive_noise == tuple(name for name, taken in found.items() if taken == "additive")
-    assert methods.diagonal_noise == tuple(name for name, taken in found.items() if taken == "diagonal")
+    assert set(methods.additive_noise) == {name for name, taken in found.items() if taken == "additive"}
+    assert set(methods.diagonal_noise) == {name for name, taken in found.items() if taken == "diagonal"}
 
 
 def test_a_model_in_cpp_takes_the_methods_for_noise(whole):

@@ -8,6 +8,10 @@
 // expect: this method takes diagonal or additive noise alone, but the model has an `enum noise
 // case: milstein_with_factors_of_other_states
 // expect: this method takes noise whose factor of a state depends on no other state: use
+// case: sriw1_with_shared_noise
+// expect: this method takes diagonal or additive noise alone, but the model has an `enum noise
+// case: sriw1_with_factors_of_other_states
+// expect: this method takes noise whose factor of a state depends on no other state: use
 // case: sra1_with_noise_that_is_not_additive
 // expect: this method takes additive noise alone, but the diffusion may depend on the state
 // case: diffusion_of_another_size
@@ -86,14 +90,18 @@ struct shared_noise : walk {
 MYRIAD_INSTANTIATE(shared_noise, myriad::milstein)
 #endif
 
-#if defined(CASE_milstein_with_factors_of_other_states)
+#if defined(CASE_sriw1_with_shared_noise)
+MYRIAD_INSTANTIATE(shared_noise, myriad::sriw1)
+#endif
+
+#if defined(CASE_milstein_with_factors_of_other_states) || defined(CASE_sriw1_with_factors_of_other_states)
 struct crossed : walk {
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_state> diffusion(auto, const myriad::vec<R, n_state>& s, const auto&) {
         return {s[y], s[x]};
     }
 };
-MYRIAD_INSTANTIATE(crossed, myriad::milstein)
+MYRIAD_INSTANTIATE(crossed, myriad::milstein, myriad::sriw1)
 #endif
 #if defined(CASE_sra1_with_noise_that_is_not_additive)
 MYRIAD_INSTANTIATE(walk, myriad::sra1)

@@ -67,6 +67,23 @@ struct additive {
     }
 };
 
+/// Diagonal noise and a drift that joins the states: x = W and dz = x z dt + c z dV, of which z is
+/// z(0) exp(the integral of W + c V - c^2 t / 2). The third is a cubic drift with a factor that is not linear.
+struct coupled_drift {
+    enum state { x, z, cubic, n_state };
+    static constexpr double c = 0.6;
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& y, const auto&) {
+        return {R(0), y[x] * y[z], y[x] + y[cubic] - y[cubic] * y[cubic] * y[cubic]};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> diffusion(auto, const myriad::vec<R, n_state>& y, const auto&) {
+        using T = myriad::real_of<R>;
+        return {R(1), T(c) * y[z], T(0.5) * myriad::cos(T(2) * y[cubic])};
+    }
+};
+
 /// Two states that share two processes, whose noise does not commute; E x^2 = exp(-t) for x(0) = 1, as
 /// 2 (-273 / 512) + 1 / 16 + 1 / 256 = -1. After Debrabant and Roessler, Appl. Numer. Math. 59 (2009) 582-594.
 struct sharing {

@@ -11,18 +11,19 @@ from ..base.errors import Error
 
 Method = Literal["runge_kutta_4", "cash_karp", "tsitouras_5", "dormand_prince_5", "verner_7", "dormand_prince_8",
                  "verner_9", "rosenbrock_23", "rodas_5p", "euler_maruyama", "milstein", "stochastic_heun",
-                 "sra1"]  # of the library's headers, as tests say
+                 "sra1", "sriw1"]  # of the library's headers, as tests say
 Control = Literal["pi_control", "pid_control", "rms_norm", "mixed_scale", "automatic_first_step",
                   "tolerance_per_instance"]
 methods: tuple[str, ...] = get_args(Method)  #: the names of methods
 controls: tuple[str, ...] = get_args(Control)  #: the names of choices of step-size control
-stochastic = ("euler_maruyama", "milstein", "stochastic_heun", "sra1")  #: those for noise, the first by default
-additive_noise, diagonal_noise = ("sra1",), ("milstein",)  #: those that take this noise alone; or, both, additive noise
+stochastic = ("euler_maruyama", "milstein", "stochastic_heun", "sra1", "sriw1")  #: for noise, the first by default
+additive_noise, diagonal_noise = ("sra1",), ("milstein", "sriw1")  #: those for this noise alone; all: additive
 fixed_step = ("runge_kutta_4", *stochastic)
 stiff = ("rosenbrock_23", "rodas_5p")  #: those that solve linear systems
 
 _stages = {"runge_kutta_4": 4, "cash_karp": 6, "verner_7": 10, "dormand_prince_8": 12, "verner_9": 16,
-           "rosenbrock_23": 3, "rodas_5p": 8, "euler_maruyama": 1, "milstein": 1, "stochastic_heun": 2, "sra1": 2}
+           "rosenbrock_23": 3, "rodas_5p": 8, "euler_maruyama": 1, "milstein": 1, "stochastic_heun": 2, "sra1": 2,
+           "sriw1": 2}
 
 
 def stages_of(written: str) -> int:
@@ -38,7 +39,7 @@ _elsewhere = {"rk45": "dormand_prince_5", "dopri5": "dormand_prince_5", "dp5": "
               "dp8": "dormand_prince_8", "vern7": "verner_7", "vern9": "verner_9", "rk4": "runge_kutta_4",
               "radau": "rodas_5p", "bdf": "rodas_5p", "lsoda": "rodas_5p", "vode": "rodas_5p", "cvode": "rodas_5p",
               "rodas5p": "rodas_5p", "rosenbrock23": "rosenbrock_23", "rkck": "cash_karp", "em": "euler_maruyama",
-              "rkmil": "milstein"}
+              "rkmil": "milstein", "sri": "sriw1", "sri1": "sriw1", "srk": "sriw1"}
 
 
 def method_type(name: str, chosen: str | Sequence[str] = (), samples: bool = False) -> str:

@@ -195,7 +195,7 @@ def method_for(model: AnyModel, method: str | None, precision: str) -> str:
                     "precision: let states share some")
     if method in additive_noise and noise.dependent is not None:
         raise Error(f"{method} takes noise that depends on no state, and that of the model depends on "
-                    f"{noise.dependent}: give method=\"euler_maruyama\", \"milstein\" or \"stochastic_heun\"")
+                    f"{noise.dependent}: give method=\"euler_maruyama\", or \"sriw1\" for diagonal noise")
     if method in diagonal_noise and noise.dependent is not None:
         otherwise = ("give method=\"euler_maruyama\", or \"stochastic_heun\" for the Stratonovich equation")
         if noise.processes:

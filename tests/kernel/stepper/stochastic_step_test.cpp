@@ -32,11 +32,11 @@ myriad::ensemble<solvable> start(std::int64_t paths, bool ito) {
     return e;
 }
 /// The Wiener processes at the end of the same paths.
-myriad::ensemble<solvable> wiener(std::int64_t paths, std::int64_t seed) {
+myriad::ensemble<solvable> wiener(std::int64_t paths, std::int64_t seed, double cell = finest) {
     myriad::ensemble<solvable> e = start(paths, true);
     for (int c = 0; c < solvable::n_state; ++c) e.state(c) = 0;
     e.parameter(solvable::bare) = 1;
-    myriad::solve<myriad::euler_maruyama>(tests::test_device(2), e, {.step = finest, .seed = seed});
+    myriad::solve<myriad::euler_maruyama>(tests::test_device(2), e, {.step = cell, .seed = seed});
     return e;
 }
 
@@ -57,16 +57,16 @@ struct orders {
 /// The orders with which the paths of the equations with multiplicative noise converge in the mean: all steps follow
 /// the same path, whose cells are the finest steps.
 template <class Method>
-orders strong_orders(bool ito) {
-    constexpr std::int64_t paths = 4000, seed = 3;
-    const auto w = wiener(paths, seed);
+orders strong_orders(bool ito, double largest = coarsest, std::int64_t paths = 4000) {
+    constexpr std::int64_t seed = 3;
+    const double cell = largest / (1 << (halvings - 1));
+    const auto w = wiener(paths, seed, cell);
     const Eigen::ArrayXd growth = (solvable::rate * end + solvable::factor * w.state(solvable::growth)).exp();
     const Eigen::ArrayXd wide = (std::asinh(wide_start) + solvable::wideness * w.state(solvable::wide)).sinh();
     std::array<double, halvings> of_growth{}, of_wide{};
     for (int k = 0; k < halvings; ++k) {
         auto e = start(paths, ito);
-        myriad::solve<Method>(tests::test_device(2), e,
-                              {.step = coarsest / (1 << k), .seed = seed, .noise_step = finest});
+        myriad::solve<Method>(tests::test_device(2), e, {.step = largest / (1 << k), .seed = seed, .noise_step = cell});
         of_growth[static_cast<std::size_t>(k)] = -std::log2((e.state(solvable::growth) - growth).abs().mean());
         of_wide[static_cast<std::size_t>(k)] = -std::log2((e.state(solvable::wide) - wide).abs().mean());
     }
@@ -89,6 +89,22 @@ TEST_CASE("stochastic_heun has strong order one for Stratonovich equations") {
     const orders found = strong_orders<myriad::stochastic_heun>(false);
     CHECK(found.growth == Approx(1).margin(0.05));
     CHECK(found.wide == Approx(1).margin(0.05));
+}
+
+TEST_CASE("the Ito equation is solved in reversed time too: a martingale's mean does not depend on its noise") {
+    const auto mean = [](auto method) {
+        constexpr std::int64_t paths = 20'000;
+        auto e = start(paths, true);
+        e.time_domain(end, 0);
+        myriad::solve<decltype(method)>(tests::test_device(2), e, {.step = 1.0 / 32, .seed = 3});
+        return e.state(solvable::growth).mean();
+    };
+    // The deviation of x is its mean times sqrt(exp(0.64) - 1), which is below 0.95; the rest is of h.
+    const double rate = solvable::rate + solvable::factor * solvable::factor / 2;
+    const auto expected = Approx(std::exp(-rate * end)).epsilon(4 * 0.95 / std::sqrt(20'000.0) + 0.02);
+    CHECK(mean(myriad::euler_maruyama()) == expected);
+    CHECK(mean(myriad::milstein()) == expected);
+    CHECK(mean(myriad::sriw1()) == expected);
 }
 
 TEST_CASE("sra1 has strong order three halves for additive noise, and two if the drift is linear") {
@@ -116,6 +132,38 @@ TEST_CASE("sra1 has strong order three halves for additive noise, and two if the
     }
     CHECK(slope(linear) == Approx(2).margin(0.05));
     CHECK(slope(curved) == Approx(1.5).margin(0.05));
+}
+
+TEST_CASE("sriw1 has strong order three halves for Ito equations with diagonal noise") {
+    const orders found = strong_orders<myriad::sriw1>(true, 1.0 / 64, 2000);  // longer ones are too long for it
+    CHECK(found.growth == Approx(1.5).margin(0.05));
+    CHECK(found.wide == Approx(1.5).margin(0.05));
+}
+TEST_CASE("sriw1 has strong order three halves where the drift joins states with noise of their own") {
+    using noisy::coupled_drift;
+    constexpr double largest = 1.0 / 32, cell = largest / 128;
+    const auto at_end = [](double step) {
+        myriad::ensemble<coupled_drift> e(1000);
+        e.state(coupled_drift::x) = 0;
+        e.state(coupled_drift::z) = 1;
+        e.state(coupled_drift::cubic) = 0.3;
+        e.time_domain(0, end);
+        myriad::solve<myriad::sriw1>(tests::test_device(2), e, {.step = step, .seed = 3, .noise_step = cell});
+        return e;
+    };
+    // An eighth of the finest steps that are compared, whose errors are 22 times larger.
+    const auto reference = at_end(cell);
+    std::array<double, halvings> joined{}, cubic{};
+    for (int k = 0; k < halvings; ++k) {
+        const auto e = at_end(largest / (1 << k));
+        const auto error = [&](int state) {
+            return -std::log2((e.state(state) - reference.state(state)).abs().mean());
+        };
+        joined[static_cast<std::size_t>(k)] = error(coupled_drift::z);
+        cubic[static_cast<std::size_t>(k)] = error(coupled_drift::cubic);
+    }
+    CHECK(slope(joined) == Approx(1.5).margin(0.05));
+    CHECK(slope(cubic) == Approx(1.5).margin(0.05));
 }
 
 TEST_CASE("euler_maruyama has weak order one where the noise does not commute") {

@@ -100,7 +100,7 @@ constexpr bool check_noise() {
     } else {
         static_assert(stochastic_method<Method>,
                       "the model has a diffusion, which methods for ordinary equations would ignore: use "
-                      "euler_maruyama, milstein, stochastic_heun or sra1");
+                      "euler_maruyama, or another method for noise");
         static_assert(n_wiener<Model> <= most_processes<R>,
                       "the model has more than 256 Wiener processes, or 512 in single precision: more than the "
                       "counters of a path have room for");

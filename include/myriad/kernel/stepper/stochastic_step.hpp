@@ -64,8 +64,8 @@ struct noisy_equation {
         }
         return sum;
     }
-    /// g dW + g g' (dW^2 - h) / 2 of diagonal noise, where g' is the derivative of a state's factor by that state: one
-    /// evaluation with dual numbers gives all, as a factor depends on no other state.
+    /// g dW + g g' (dW^2 - |h|) / 2 of diagonal noise, where g' is the derivative of a state's factor by that state:
+    /// one evaluation with dual numbers gives all, as a factor depends on no other state.
     MYRIAD_FUNCTION vec<S, n> noise_with_correction(const S& t, const S& h, const vec<S, n>& y) const {
         if constexpr (is_additive<Model>) {
             return noise(t, y);
@@ -78,7 +78,7 @@ struct noisy_equation {
             vec<S, n> sum;
             MYRIAD_UNROLL_UP_TO(64, 16)
             for (int c = 0; c < MYRIAD_LENGTH(n); ++c) {
-                const S dw = increments[c], excess = half * fma(dw, dw, -h);
+                const S dw = increments[c], excess = half * fma(dw, dw, -abs(h));
                 sum[c] = g[c].value * fma(g[c].derivative, excess, dw);
             }
             return sum;
