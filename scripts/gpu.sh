@@ -83,7 +83,8 @@ END
     fi
     local status=0
     MYRIAD_TEST_DEVICE=cuda python3 -m pytest -q --full -p no:cacheprovider --durations=5 \
-        python/tests/test_gpu.py python/tests/test_gpu_dynamics.py python/tests/test_validation.py python/tests/test_nvrtc.py 2>&1 |
+        python/tests/test_gpu.py python/tests/test_gpu_dynamics.py python/tests/test_validation.py \
+        python/tests/test_nvrtc.py 2>&1 |
         tee "$output/python_tests.log" | tail -40 || status=1
     python3 benchmarks/python/van_der_pol.py --check --output "$output/python_van_der_pol.csv" 2>&1 |
         tee "$output/python_van_der_pol.log" || status=1
