@@ -30,7 +30,7 @@ sweep = my.grid({k: np.linspace(0.2, 0.3, 50), x: [-1.0, 1.0], B: 0.3})  # all c
 run = my.solve(duffing, sweep, start={v: 0}, time=(0, 2 * np.pi), phases=40,
                record=dict(from_phase=32, states=[x]),  # at the ends of phases; samples=200: along the solution
                method="tsitouras_5", rtol=1e-8, atol=1e-8,
-               device="auto")                           # or "cpu", "cuda", "cuda:1", ["cuda:0", "cuda:1"]
+               device="auto")                           # or "cpu", "cpu:2" (threads), "cuda", "cuda:1"
 print(run.report)                                       # statuses, steps, device, notes
 run["x"], run["x_end"], run["peak"], run.status         # arrays; run["x_sample"] are samples
 run.to_xarray()                                         # with the grid's axes

@@ -126,6 +126,12 @@ def test_equations_are_no_model():
         my.solve({"x": "v", "v": "-x"}, start={"x": 1, "v": 0}, time=(0, 1))
 
 
+def test_an_array_in_place_of_a_name_is_told_by_its_shape(ball):
+    run = my.solve(ball, {"loss": 0.5, "g": 1.0}, start={"height": np.linspace(1, 2, 400), "speed": 0}, time=(0, 0.1))
+    with pytest.raises(my.Error, match=r"^an array of shape \(400,\) is no component of a model"):
+        run[np.arange(400.0)]
+
+
 def test_shared_values_are_single_numbers(ball):
     with pytest.raises(my.Error, match="'g' is shared by all instances and has 2 values"):
         my.solve(ball, {"loss": 0.5, "g": [1.0, 2.0]}, start={"height": 1, "speed": 0}, time=(0, 1))

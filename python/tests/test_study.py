@@ -418,6 +418,8 @@ def test_messages_of_axes():
         my.study(duffing(), my.grid({k: 1, B: [1, 2]}), start={x: 1, v: 0}, time=(0, 1))
     with pytest.raises(my.Error, match="'k' has 3 values and 'x' has 2"):
         my.study(duffing(), {k: [1, 2, 3], B: 1}, start={x: [1, 2], v: 0}, time=(0, 1))
+    with pytest.raises(my.Error, match=r"generate=\{k: exp\(normal\(0, 1\)\)\}"):
+        my.study(duffing(), {k: my.exp(my.normal(0, 1)), B: 1}, draws=10, start={x: 1, v: 0}, time=(0, 1))
 
 
 def test_an_exception_of_the_progress_function_ends_the_run():

@@ -24,6 +24,11 @@ if TYPE_CHECKING:
     from .any_model import AnyModel
 
 
+def _briefly(key: object) -> str:
+    """What somebody gave, in a few words: an array may have many lines."""
+    return f"an array of shape {key.shape}" if isinstance(key, np.ndarray) else repr(key)
+
+
 def name_of(key: Component) -> str:
     """The name of a component: a symbol's, SymPy's too, or the text itself."""
     if isinstance(key, str):
@@ -32,7 +37,7 @@ def name_of(key: Component) -> str:
         return sympy_name(key)
     if isinstance(key, Node) and key.op == "symbol" and key.value[0] != "built-in":
         return key.value[1]
-    raise Error(f"{key!r} is no component of a model: give a symbol, such as x, or its name, such as \"x\"")
+    raise Error(f"{_briefly(key)} is no component of a model: give a symbol, such as x, or its name, such as \"x\"")
 
 
 def short_name(name: str) -> str:

@@ -12,6 +12,8 @@ import numpy as np
 
 from ..base.errors import Error, refuse_masked
 from ..models.components import unknown
+from ..symbolic.functions import draws
+from ..symbolic.node import Node, walk
 from ..symbolic.numbers import as_numbers
 from .gpu_inputs import DeviceInput, is_on_gpu
 
@@ -44,6 +46,13 @@ class Along:
         return values.astype(dtype or values.dtype, copy=False)
 
 
+def _instead_of(value: Any, name: str) -> str:
+    """What to give instead of something that is no number."""
+    if isinstance(value, Node) and any(node.op in draws for node in walk([value])):
+        return f"the draw itself, or let the model of a study compute it, my.model(..., generate={{{name}: {value!r}}})"
+    return "a number, or an array with one number per instance"
+
+
 def numbers(value: Any, name: str) -> Any:
     """A number, or an array of one dimension, of real numbers; arrays on a GPU stay there."""
     if isinstance(value, Along):
@@ -55,7 +64,7 @@ def numbers(value: Any, name: str) -> Any:
     if array.dtype.kind == "c":
         raise Error(f"'{name}' is complex: a model is real, so give real and imaginary parts as two components")
     if array.dtype.kind not in "biuf":
-        raise Error(f"'{name}' is {value!r}: give a number, or an array with one number per instance")
+        raise Error(f"'{name}' is {value!r}: give {_instead_of(value, name)}")
     if array.ndim > 1:
         raise Error(f"'{name}' has {array.ndim} dimensions: give one number per instance, in one dimension; "
                     "my.grid(...) makes a sweep over several axes")
