@@ -209,3 +209,25 @@ def test_a_function_that_goes_to_zero_and_rests_there_has_crossed_once(does):
     run = solved({x: 1.0, v: 0.0}, my.event(flat, direction="falling", do=does), {n: 0}, size=1,
                  start={x: 0.0, v: 0.0}, time=(0, 4), maximum_step=0.4)
     assert run.status[0] == "success" and run[n][0] == 1
+
+
+def test_a_ball_past_its_surface_that_comes_back_has_not_hit_it_again():
+    pull, keeps = my.parameters("pull keeps")
+    generator = np.random.default_rng(1)
+    a, e, h = generator.uniform(0.5, 2, 500), generator.uniform(0.6, 1, 500), generator.uniform(0.05, 1, 500)
+    run = solved({x: v, v: -pull}, my.event(1 - my.exp(-20 * x), direction="falling", do={v: -keeps * v, n: n + 1},
+                                            tolerance=0.1), {n: 0}, {pull: a, keeps: e}, start={x: h, v: 0.0},
+                 time=(0, 6), max_steps=20_000)
+    impact = np.sqrt(2 * h / a)[:, None] * np.concatenate(
+        [np.ones((500, 1)), 2 * np.cumprod(np.repeat(e[:, None], 40, axis=1), axis=1)], axis=1).cumsum(axis=1)
+    count = (impact < 6).sum(axis=1)
+    clear = (np.abs(impact - 6).min(axis=1) > 0.1) & (count < 20)
+    assert clear.sum() > 200 and np.array_equal(run[n][clear], count[clear])
+
+
+@pytest.mark.parametrize("exponent", [-900, -1000, -1020, -1030, -1040, -1050])
+def test_events_of_states_that_are_denormal_numbers_are_those_of_others(exponent):
+    unit = 2.0**exponent
+    run = solved({x: v, v: -1.3 * unit}, my.event(x, direction="falling", do={v: -0.8 * v, n: n + 1}), {n: 0}, size=1,
+                 start={x: unit, v: 0.0}, time=(0, 6))
+    assert run.status[0] == "success" and run[n][0] == 3
