@@ -41,22 +41,24 @@ MYRIAD_FUNCTION R rounding_weight(int c) {
 /// How far rounding may put the event functions at (t, y) from their values, as far as that shows: nothing can be told
 /// from values closer to zero. A few roundings of t and of states of the given sizes, times the derivatives. One
 /// derivative does for all of them, with weights, so that x - y has a rounding error though its two terms cancel.
-/// Zero where the functions have no finite derivative, or are constant but for jumps.
+/// States too small for normal numbers have the rounding error of the smallest. Zero where the functions have no finite
+/// derivative, or are constant but for jumps.
 template <class Model, class R>
 MYRIAD_FUNCTION vec<R, n_event<Model>> compute_roundings(const R& t, const vec<R, n_state<Model>>& y,
                                                          const vec<R, n_state<Model>>& size,
                                                          const inputs<Model, R>& p) {
+    constexpr R least = smallest_normal_of<R> / epsilon_of<R>;
     vec<dual<R>, n_state<Model>> y_dual;
     if constexpr (n_state < Model >> largest_traced_system) {
         for (int c = 0; c < MYRIAD_LENGTH(n_state<Model>); ++c)
-            y_dual[c] = dual<R>(y[c], rounding_weight<R>(detail::whole_state<Model>(c)) * size[c]);
+            y_dual[c] = dual<R>(y[c], rounding_weight<R>(detail::whole_state<Model>(c)) * (size[c] + least));
     } else {
         static_for<0, n_state<Model>>([&](auto c) MYRIAD_LAMBDA {
             if constexpr (team_size<Model> == 1) {
                 constexpr R weight = rounding_weight<R>(decltype(c)::value);
-                y_dual[c] = dual<R>(y[c], weight * size[c]);
+                y_dual[c] = dual<R>(y[c], weight * (size[c] + least));
             } else {
-                y_dual[c] = dual<R>(y[c], rounding_weight<R>(detail::whole_state<Model>(c)) * size[c]);
+                y_dual[c] = dual<R>(y[c], rounding_weight<R>(detail::whole_state<Model>(c)) * (size[c] + least));
             }
         });
     }
