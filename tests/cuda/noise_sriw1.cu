@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A method with integrals of several Wiener processes, more than a block has numbers for.
 //
-//
 // limit: integrate_ensemble<solvable, sriw1> registers 176 stack 0 spill 0
 
 #include <myriad/cuda/kernel.cuh>

@@ -101,7 +101,11 @@ struct crossed : walk {
         return {s[y], s[x]};
     }
 };
-MYRIAD_INSTANTIATE(crossed, myriad::milstein, myriad::sriw1)
+#if defined(CASE_sriw1_with_factors_of_other_states)
+MYRIAD_INSTANTIATE(crossed, myriad::sriw1)
+#else
+MYRIAD_INSTANTIATE(crossed, myriad::milstein)
+#endif
 #endif
 #if defined(CASE_sra1_with_noise_that_is_not_additive)
 MYRIAD_INSTANTIATE(walk, myriad::sra1)

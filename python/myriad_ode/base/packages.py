@@ -11,10 +11,10 @@ from .errors import Error
 
 def package(name: str, user: str) -> Any:
     """The package of a name, for `user`, as "to_xarray". Raises `Error` where it is not installed."""
-    try:
-        return importlib.import_module(name)
-    except ImportError:
-        raise Error(f"{user} needs the package {name}: `pip install {name}`") from None
+    found = installed(name)
+    if found is None:
+        raise Error(f"{user} needs the package {name}: `pip install {name}`")
+    return found
 
 
 def installed(name: str) -> Any:
