@@ -13,6 +13,12 @@ if TYPE_CHECKING:
     from ..symbolic.types import Progress
 
 
+def in_notebook() -> bool:
+    """Whether a shell of IPython runs in this process; a program that only imports its packages is none."""
+    ipython = sys.modules.get("IPython")
+    return ipython is not None and ipython.get_ipython() is not None
+
+
 class ProgressDisplay:
     """A function of the numbers of instances done and of all, or a bar."""
 
@@ -25,7 +31,7 @@ class ProgressDisplay:
                 raise Error("progress=True shows a bar of the package tqdm, which is missing: `pip install tqdm`, or "
                             "give a function of two numbers, instances done and all") from None
             # a file keeps every frame, which a terminal or a notebook draws over
-            seconds = 0.1 if sys.stderr.isatty() or "ipykernel" in sys.modules else 5.0
+            seconds = 0.1 if sys.stderr.isatty() or in_notebook() else 5.0
             self._bar = tqdm(unit="instance", unit_scale=True, mininterval=seconds, miniters=1)
 
     def __call__(self, done: int, total: int, earlier: int = 0, seconds: float = 0.0,

@@ -65,8 +65,10 @@ class Call:
         self.components = Components(self.model)
 
     def gather(self, sweep: Sweep | ByComponent | None, start: ByComponent | None, time: tuple[Values, Values] | None,
-               size: int | None, options: Options) -> None:
+               size: int | None, options: Options, paths: int | None = None) -> None:
         """Takes inputs and options, and refuses those that do not fit."""
+        if paths is not None:
+            sweep = with_paths(sweep, count_of_paths(self.model, paths))
         values = given_values(self.components, sweep, start)
         if isinstance(self.model, WithSensitivities):
             self.components.defaults = {**self.components.defaults, **start_derivatives(self.model, values)}
@@ -130,12 +132,13 @@ class Call:
             raise Error(f"'tolerance_scale' has {len(scale)} values for {self.count} instances: give one for each")
         self.ensemble.array("tolerance_scale")[...] = scale
 
-    def integrate_none(self) -> None:
-        """The same for a sweep without instances."""
+    def run_of_none(self) -> Run:
+        """The run of a sweep without instances, which needs no kernel."""
         record, samples = self.core_options.record, self.core_options.samples
         self.ensemble = EmptyEnsemble(self.components, self.given, self.real, samples.capacity)
         self.report = EmptyReport(max(self.core_options.phases - record.from_phase, 0), self.real)
         self.kernel, self.failure = no_kernel, None
+        return self.run(0.0)
 
     def describe(self) -> dict[str, Any]:
         """What is solved, as plain values."""
@@ -146,10 +149,12 @@ class Call:
                 "options": {name: repr(value) for name, value in vars(self.options).items()
                             if value is not getattr(default, name) and repr(value) != repr(getattr(default, name))}}
 
-    def run(self, seconds: float, notes: Sequence[str] = ()) -> Run:
+    def run(self, seconds: float, note_of_device: str | None = None) -> Run:
         """What has been computed, in so many seconds. Raises what ended the computation."""
+        notes = (note_of_device, time_jumps.note(self.model, longest_step(self.options)), note_on(self.model))
         run = Run(self.components, self.ensemble, self.report, self.kernel, self.sweep, self.given, self.domain,
-                  self.recorded, self.sampled, seconds, self.core_options.record, notes, self.describe)
+                  self.recorded, self.sampled, seconds, self.core_options.record, [one for one in notes if one],
+                  self.describe)
         if isinstance(self.model, WithSensitivities) and self.count and (undefined := note(run)) is not None:
             run.report.notes.append(undefined)
         if isinstance(self.failure, KeyboardInterrupt):
@@ -190,9 +195,8 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
                       `dict(from_phase=, states=, accessories=, time=)`; `run["t"]` are the recorded times
     samples           dense output: a number of evenly spaced times, an array of times, or `dict(states=, evenly= |
                       times= | every=, capacity=, minimum_spacing=, from_phase=)`
-    method, control   as in the C++ library: one of `my.methods`, by default "tsitouras_5", and for a model
-                      with noise "euler_maruyama"; control is one or several of `my.controls`, of which
-                      "tolerance_per_instance" is with `tolerance_scale=`
+    method, control   one of `my.methods`, by default "tsitouras_5", and for a model with noise "euler_maruyama"; one
+                      or several of `my.controls`, of which "tolerance_per_instance" is with `tolerance_scale=`
     rtol, atol        tolerances of the error per step: numbers, lists in the order of the states, or dicts by state
     events            changes of `direction`, `tolerance` or `stop_after` of events by name
     size              number of instances, if no array gives it
@@ -223,13 +227,9 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
     given = options_of(options, others, solve)
     devices, no_gpu = devices_of(device, interpreted)
     call = Call(model, method, control, precision, free, sensitivity_control)
-    if paths is not None:
-        sweep = with_paths(sweep, count_of_paths(call.model, paths))
-    call.gather(sweep, start, time, size, given)
+    call.gather(sweep, start, time, size, given, paths)
     if call.count == 0:
-        call.integrate_none()
-        return call.run(clock.perf_counter() - begin)
+        return call.run_of_none()
     call.prepare(devices, interpreted)
     call.integrate(devices, tolerance_scale, make_consistent, progress)
-    notes = (no_gpu, time_jumps.note(call.model, longest_step(call.options)), note_on(call.model))
-    return call.run(clock.perf_counter() - begin, [one for one in notes if one])
+    return call.run(clock.perf_counter() - begin, no_gpu)
