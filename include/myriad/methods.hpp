@@ -8,6 +8,7 @@
 #include "myriad/kernel/methods/dense.hpp"
 #include "myriad/kernel/methods/dormand_prince_5.hpp"
 #include "myriad/kernel/methods/dormand_prince_8.hpp"
+#include "myriad/kernel/methods/dri1.hpp"
 #include "myriad/kernel/methods/euler_maruyama.hpp"
 #include "myriad/kernel/methods/method_list.hpp"
 #include "myriad/kernel/methods/milstein.hpp"

@@ -101,6 +101,24 @@ def test_a_state_that_noise_alone_moves_is_not_taken_for_a_constant():
     assert my.model(equations).stops and not my.model(equations, noise={w: 1}).stops
 
 
+@pytest.fixture(scope="module")
+def sharing():
+    """Two states that share two processes whose noise does not commute: Debrabant and Roessler, Appl. Numer. Math. 59
+    (2009) 582-594."""
+    r = np.sqrt(2)
+    return my.model({x: -273 / 512 * x, y: -x / 160 + (r / 8 - 785 / 512) * y},
+                    noise={x: {W: x / 4, V: x / 16}, y: {W: (1 - 2 * r) / 4 * y, V: x / 10 + y / 16}})
+
+
+def test_means_by_a_weak_method_are_those_of_the_equation(sharing):
+    end, paths = 3, 100_000
+    run = my.solve(sharing, start={x: 1, y: 1}, time=(0, end), step=end / 16, paths=paths, seed=2, method="dri1")
+    for values, exact, bias in (
+            (run["x"]**2, np.exp(-end), 0.0015), (run["x"] * run["y"], np.exp(-2 * end), 0.0073),
+            (run["y"]**2, (149 * np.exp(-2.5 * end) + np.exp(-end)) / 150, 0.0295)):  # of the method with such steps
+        assert abs(values.mean() - exact) < 4 * values.std() / paths**0.5 + bias * exact
+
+
 # -- What a path depends on --------------------------------------------------------------------------------------------
 
 @pytest.fixture(scope="module")
@@ -296,6 +314,7 @@ many = my.model({x: 0}, noise={x: {f"W{i}": 1 for i in range(257)}})
     (crossed, dict(method="sriw1"), "sriw1 takes noise whose factor of a state depends on no other state"),
     (shared_noise(), dict(method="sriw1"), "sriw1 takes a Wiener process for each state"),
     (diagonal(), dict(method="sri1"), "there is no method 'sri1': use \"sriw1\""),
+    (diagonal(), dict(method="DRI1"), "there is no method 'DRI1': use \"dri1\""),
     (diagonal(), dict(method="sra1"), "sra1 takes noise that depends on no state, and that of the model depends on x"),
     (many, {}, "the model has 257 Wiener processes, and there may be 256 in double precision"),
     (diagonal(), dict(free=[k]), "the model has noise, and derivatives along its paths are not there yet"),

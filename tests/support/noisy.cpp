@@ -9,5 +9,5 @@ MYRIAD_INSTANTIATE(noisy::solvable, myriad::euler_maruyama, myriad::milstein, my
 MYRIAD_INSTANTIATE_FLOAT(noisy::solvable, myriad::milstein)
 MYRIAD_INSTANTIATE(noisy::interrupted, myriad::euler_maruyama)
 MYRIAD_INSTANTIATE(noisy::additive, myriad::sra1)
-MYRIAD_INSTANTIATE(noisy::sharing, myriad::euler_maruyama)
+MYRIAD_INSTANTIATE(noisy::sharing, myriad::euler_maruyama, myriad::dri1)
 MYRIAD_INSTANTIATE(noisy::coupled_drift, myriad::sriw1)

@@ -12,7 +12,7 @@ from ..base.errors import Error
 
 Method = Literal["runge_kutta_4", "cash_karp", "tsitouras_5", "dormand_prince_5", "verner_7", "dormand_prince_8",
                  "verner_9", "rosenbrock_23", "rodas_5p", "euler_maruyama", "milstein", "stochastic_heun",
-                 "sra1", "sriw1"]  # of the library's headers, as tests say
+                 "sra1", "sriw1", "dri1"]  # of the library's headers, as tests say
 Control = Literal["pi_control", "pid_control", "rms_norm", "mixed_scale", "automatic_first_step",
                   "tolerance_per_instance"]
 methods: tuple[str, ...] = get_args(Method)  #: the names of methods
@@ -56,7 +56,7 @@ _elsewhere = {"rk45": "dormand_prince_5", "dopri5": "dormand_prince_5", "dp5": "
               "dp8": "dormand_prince_8", "vern7": "verner_7", "vern9": "verner_9", "rk4": "runge_kutta_4",
               "radau": "rodas_5p", "bdf": "rodas_5p", "lsoda": "rodas_5p", "vode": "rodas_5p", "cvode": "rodas_5p",
               "rodas5p": "rodas_5p", "rosenbrock23": "rosenbrock_23", "rkck": "cash_karp", "em": "euler_maruyama",
-              "rkmil": "milstein", "sri": "sriw1", "sri1": "sriw1", "srk": "sriw1"}
+              "rkmil": "milstein", "sri": "sriw1", "sri1": "sriw1", "srk": "sriw1", "siea": "dri1"}
 
 
 def method_type(name: str, chosen: str | Sequence[str] = (), samples: bool = False) -> str:

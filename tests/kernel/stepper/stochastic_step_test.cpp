@@ -185,6 +185,25 @@ TEST_CASE("euler_maruyama has weak order one where the noise does not commute") 
     CHECK(2 * moment[3] - moment[2] == Approx(std::exp(-3.0)).epsilon(4 * 1.1 / std::sqrt(paths) + 0.004));
 }
 
+TEST_CASE("means by dri1 are those of the equation, and its paths are the same alone and among others") {
+    constexpr std::int64_t paths = 100'000;
+    const auto at_end = [](std::int64_t count) {
+        myriad::ensemble<sharing> e(count);
+        e.state(sharing::x) = 1;
+        e.state(sharing::z) = 1;
+        e.time_domain(0, 3);
+        myriad::solve<myriad::dri1>(tests::test_device(2), e, {.step = 3.0 / 16, .seed = 11});
+        return e;
+    };
+    const auto all = at_end(paths), alone = at_end(1);
+    CHECK(all.state(sharing::x)[0] == alone.state(sharing::x)[0]);
+    CHECK(all.state(sharing::z)[0] == alone.state(sharing::z)[0]);
+    // Within four standard errors, and of x^2 what dri1_test's sums over all outcomes give for such steps.
+    const auto& x = all.state(sharing::x);
+    CHECK(x.square().mean() == Approx(std::exp(-3.0)).epsilon(4 * 1.1 / std::sqrt(paths) + 0.0015));
+    CHECK(x.mean() == Approx(std::exp(-3 * 273.0 / 512)).margin(4 * std::sqrt(std::exp(-3.0) / paths)));
+}
+
 TEST_CASE("means and variances of an Ornstein-Uhlenbeck process are those of the method") {
     constexpr std::int64_t paths = 100'000;
     constexpr double h = 1.0 / 32, left = 1 - h * solvable::damping;

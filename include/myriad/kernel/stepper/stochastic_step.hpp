@@ -64,6 +64,23 @@ struct noisy_equation {
         }
         return sum;
     }
+    /// g, a vector for each process: zero but for its own state if the noise is diagonal.
+    MYRIAD_FUNCTION vec<vec<S, n>, m> columns(const S& t, const vec<S, n>& y) const {
+        const auto g = Model::template diffusion<S>(t, y, p);
+        vec<vec<S, n>, m> all;
+        MYRIAD_UNROLL_UP_TO(64, 16)
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
+            MYRIAD_UNROLL_UP_TO(64, 16)
+            for (int c = 0; c < MYRIAD_LENGTH(n); ++c) {
+                if constexpr (has_general_noise<Model>) {
+                    all[j][c] = g[c][j];
+                } else {
+                    all[j][c] = c == j ? g[c] : S(real_of<S>(0));
+                }
+            }
+        }
+        return all;
+    }
     /// g dW + g g' (dW^2 - |h|) / 2 of diagonal noise, where g' is the derivative of a state's factor by that state:
     /// one evaluation with dual numbers gives all, as a factor depends on no other state.
     MYRIAD_FUNCTION vec<S, n> noise_with_correction(const S& t, const S& h, const vec<S, n>& y) const {
