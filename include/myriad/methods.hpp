@@ -10,6 +10,7 @@
 #include "myriad/kernel/methods/dormand_prince_8.hpp"
 #include "myriad/kernel/methods/dri1.hpp"
 #include "myriad/kernel/methods/euler_maruyama.hpp"
+#include "myriad/kernel/methods/linearly_implicit_euler_maruyama.hpp"
 #include "myriad/kernel/methods/method_list.hpp"
 #include "myriad/kernel/methods/milstein.hpp"
 #include "myriad/kernel/methods/rodas_5p.hpp"

@@ -119,6 +119,15 @@ def test_means_by_a_weak_method_are_those_of_the_equation(sharing):
         assert abs(values.mean() - exact) < 4 * values.std() / paths**0.5 + bias * exact
 
 
+def test_a_stiff_drift_takes_long_steps_by_an_implicit_method():
+    relaxing, paths, h = my.model({x: 0, y: k * (x - y)}, noise={y: sigma}), 50_000, 0.1
+    run = my.solve(relaxing, {k: 1000, sigma: 2}, start={x: 3, y: 0}, time=(0, 10 * h), step=h, paths=paths, seed=2,
+                   method="linearly_implicit_euler_maruyama")
+    variance = 2**2 * h / ((1 + 1000 * h)**2 - 1)  # of the method, whose step is y1 - x = (y - x + sigma dW) / (1 + k h)
+    assert abs(run["y"].mean() - 3) < 4 * (variance / paths)**0.5
+    assert abs(run["y"].var() / variance - 1) < 4 * (2 / paths)**0.5
+
+
 # -- What a path depends on --------------------------------------------------------------------------------------------
 
 @pytest.fixture(scope="module")
@@ -302,6 +311,7 @@ many = my.model({x: 0}, noise={x: {f"W{i}": 1 for i in range(257)}})
      'method="euler_maruyama", "milstein", '),
     (diagonal(), dict(method="rodas_5p"), "the model has noise, which rodas_5p would ignore"),
     (diagonal(), dict(method="em"), "there is no method 'em': use \"euler_maruyama\""),
+    (diagonal(), dict(method="ImplicitEM"), "no method 'ImplicitEM': use \"linearly_implicit_euler_maruyama\""),
     (diagonal(), dict(control="pi_control"), "euler_maruyama takes fixed steps and has no step-size control"),
     (my.model({x: -x}), dict(method="milstein"), "milstein is for equations with noise, and the model has none"),
     (my.model({x: -x}), dict(paths=3), "paths is 3, and the model has no noise"),

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Callable, Sequence
 from typing import Any, Literal, NamedTuple, get_args
 
@@ -12,7 +13,7 @@ from ..base.errors import Error
 
 Method = Literal["runge_kutta_4", "cash_karp", "tsitouras_5", "dormand_prince_5", "verner_7", "dormand_prince_8",
                  "verner_9", "rosenbrock_23", "rodas_5p", "euler_maruyama", "milstein", "stochastic_heun",
-                 "sra1", "sriw1", "dri1"]  # of the library's headers, as tests say
+                 "sra1", "sriw1", "dri1", "linearly_implicit_euler_maruyama"]  # of the library's headers, as tests say
 Control = Literal["pi_control", "pid_control", "rms_norm", "mixed_scale", "automatic_first_step",
                   "tolerance_per_instance"]
 methods: tuple[str, ...] = get_args(Method)  #: the names of methods
@@ -45,7 +46,7 @@ stiff = _those(lambda facts: facts.solves_linear_systems)  #: those that solve l
 
 def stages_of(written: str) -> int:
     """The stages of the method in a C++ type."""
-    return next((facts.stages for name, facts in _facts.items() if name in written), 7)
+    return next((_facts[word].stages for word in re.findall(r"\w+", written) if word in _facts), 7)
 
 
 default = "tsitouras_5"  # docs/methods.md#the-default
@@ -56,7 +57,8 @@ _elsewhere = {"rk45": "dormand_prince_5", "dopri5": "dormand_prince_5", "dp5": "
               "dp8": "dormand_prince_8", "vern7": "verner_7", "vern9": "verner_9", "rk4": "runge_kutta_4",
               "radau": "rodas_5p", "bdf": "rodas_5p", "lsoda": "rodas_5p", "vode": "rodas_5p", "cvode": "rodas_5p",
               "rodas5p": "rodas_5p", "rosenbrock23": "rosenbrock_23", "rkck": "cash_karp", "em": "euler_maruyama",
-              "rkmil": "milstein", "sri": "sriw1", "sri1": "sriw1", "srk": "sriw1", "siea": "dri1"}
+              "implicitem": "linearly_implicit_euler_maruyama", "rkmil": "milstein", "sri": "sriw1", "sri1": "sriw1",
+              "srk": "sriw1", "siea": "dri1"}
 
 
 def method_type(name: str, chosen: str | Sequence[str] = (), samples: bool = False) -> str:
