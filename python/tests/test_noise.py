@@ -123,7 +123,7 @@ def test_a_stiff_drift_takes_long_steps_by_an_implicit_method():
     relaxing, paths, h = my.model({x: 0, y: k * (x - y)}, noise={y: sigma}), 50_000, 0.1
     run = my.solve(relaxing, {k: 1000, sigma: 2}, start={x: 3, y: 0}, time=(0, 10 * h), step=h, paths=paths, seed=2,
                    method="linearly_implicit_euler_maruyama")
-    variance = 2**2 * h / ((1 + 1000 * h)**2 - 1)  # of the method, whose step is y1 - x = (y - x + sigma dW) / (1 + k h)
+    variance = 2**2 * h / ((1 + 1000 * h)**2 - 1)  # of y1 - x = (y - x + sigma dW) / (1 + k h)
     assert abs(run["y"].mean() - 3) < 4 * (variance / paths)**0.5
     assert abs(run["y"].var() / variance - 1) < 4 * (2 / paths)**0.5
 
