@@ -124,6 +124,8 @@ def test_orbits_that_fail_are_nan_from_there_on():
     assert np.isnan(lost.interval()).all()
     with pytest.raises(my.Error, match="no points of y: there are those of x"):
         lost["up", y]
+    with pytest.raises(my.Error, match=r'give direction and state, as in result\["up", x\]'):
+        lost[x]
 
 
 def test_pictures_and_datasets_of_hysteresis():

@@ -55,6 +55,11 @@ def test_stiff_methods_take_tangents_of_networks():
     (lambda: my.with_tangents(decay, 0), "from 1 to 2"),
     (lambda: my.with_tangents(decay, transient_phases=-1), "transient_phases is -1.*0 or more"),
     (lambda: my.with_tangents(my.model({my.state("growth_1"): 1})), "component 'growth_1'"),
+    (lambda: my.with_tangents(my.model({my.state("exponent_1"): 1})), "component 'exponent_1'"),
+    (lambda: my.solve(my.with_tangents(decay), {"k": 1.0}, start={x: 1, v: 1}, time=(0, 1), record=["exponent_1"]),
+     "'exponent_1' is an output, .*: name the components that it follows from"),
+    (lambda: my.study(my.with_tangents(decay), {"k": 1.0}, start={x: 1, v: 1}, time=(0, 1), keep=["exponent_1"]),
+     "'exponent_1' is an output"),
 ])
 def test_wrong_tangents_are_refused(make, message):
     with pytest.raises(my.Error, match=message):

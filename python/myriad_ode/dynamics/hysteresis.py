@@ -40,6 +40,8 @@ class Hysteresis:
 
     def __getitem__(self, key: tuple[str, Component]) -> Array:
         """`result["up", x]`: the points of a state on the way up, (values, starts, points)."""
+        if not isinstance(key, tuple) or len(key) != 2:
+            raise Error(f"{key!r} has no direction: give direction and state, as in result[\"up\", x]")
         direction, state = key
         if direction not in self.branches:
             raise UnknownName(f"there is no way '{direction}': there is {', '.join(self.branches)}")

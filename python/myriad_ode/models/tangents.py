@@ -65,11 +65,10 @@ class WithTangents(Extended):
         mirror /= np.sqrt(sum(mirror * mirror))
         start = np.eye(n) - 2 * mirror[:, None] * mirror
         defaults = {"transient_phases": int(transient_phases), **dict(zip(tangents, start[:, :self.vectors].T.ravel()))}
-        super().__init__(model, {"state": tangents, "shared_integer": ["transient_phases"],
-                                 "accessory": [*growth, "time_summed", "phase_began"]}, defaults, "tangents")
         time_summed = symbol("accessory", "time_summed")
         exponents = {f"exponent_{i}": symbol("accessory", name) / time_summed for i, name in zip(numbers, growth)}
-        self.outputs = {**self.outputs, **exponents}
+        super().__init__(model, {"state": tangents, "shared_integer": ["transient_phases"],
+                                 "accessory": [*growth, "time_summed", "phase_began"]}, defaults, "tangents", exponents)
 
     def source(self) -> tuple[str, str]:
         """The text that kernels are compiled from, and the name of its struct."""

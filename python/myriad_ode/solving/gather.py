@@ -11,7 +11,7 @@ import numpy as np
 
 from ..base import component_kinds as kinds
 from ..base.errors import Error
-from ..models.components import Components, by_component, short_name, unknown
+from ..models.components import Components, by_component, short_name
 from ..models.sensitivities import ends_of_domain
 from ..sweeps.gpu_inputs import DeviceInput
 from ..sweeps.inputs import Along, by_name, numbers, whole, whole_numbers
@@ -48,7 +48,7 @@ def given_values(components: Components, sweep: Sweep | ByComponent | None,
         if components.place.get(name, ("",))[0] not in some_kinds:
             known = [n for n, (kind, _) in components.place.items()
                      if n not in {*components.tables, *components.hidden} and kind in some_kinds]
-            raise unknown(name, known, f"component of the model that {source} can set")
+            raise components.unknown(name, known, f"component of the model that {source} can set")
         return name
 
     return _named(sweep, start, functools.partial(settable, "the sweep", kinds.valued),
@@ -64,7 +64,8 @@ def full_name(components: Components, key: Component) -> str:
         return f"{components.place[name][0]}.{name}"
     if name in ends_of_domain.values():
         return name
-    raise unknown(name, [n for n in components.place if n not in components.tables], "component of the model")
+    known = [n for n in components.place if n not in components.tables]
+    raise components.unknown(name, known, "component of the model")
 
 
 def ends_of(time: tuple[Values, Values] | None) -> tuple[Values, Values]:
