@@ -26,10 +26,11 @@
 // expect: threads_per_instance is not a power of two from 1 to 256
 // SPDX-License-Identifier: MIT
 // Units that cannot be coupled.
+// clang-format off: the first header is precompiled
+#include <myriad/instantiate.hpp>
 #include "myriad/coupled_units.hpp"
-
-#include "myriad/instantiate.hpp"
 #include "myriad/model.hpp"
+// clang-format on
 
 struct cell {
 #if defined CASE_team_that_does_not_divide_a_warp

@@ -36,8 +36,9 @@
 // expect: coupled units have no diffusion yet
 // SPDX-License-Identifier: MIT
 // Stochastic equations with methods and parts that do not fit them.
+#include <myriad/instantiate.hpp>  // first, as it is precompiled
+
 #include "myriad/coupled_units.hpp"
-#include "myriad/instantiate.hpp"
 #include "myriad/model.hpp"
 #include "myriad/sensitivity.hpp"
 #include "myriad/tangent.hpp"

@@ -35,11 +35,12 @@
 // expect: this model branches on its state: use myriad::select.*scalar_only
 // SPDX-License-Identifier: MIT
 // Right-hand sides that the loop cannot call, or not for a pack of instances, which has no single truth value.
+// clang-format off: the first header is precompiled
+#include <myriad/instantiate.hpp>
 #include <algorithm>
 #include <cmath>
-
-#include "myriad/instantiate.hpp"
 #include "myriad/model.hpp"
+// clang-format on
 
 #ifdef CASE_final_model
 #define FINAL final
