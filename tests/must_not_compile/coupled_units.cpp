@@ -26,7 +26,8 @@
 // expect: threads_per_instance is not a power of two from 1 to 256
 // SPDX-License-Identifier: MIT
 // Units that cannot be coupled.
-// clang-format off: the first header is precompiled
+// The first header is precompiled.
+// clang-format off
 #include <myriad/instantiate.hpp>
 #include "myriad/coupled_units.hpp"
 #include "myriad/model.hpp"

@@ -35,7 +35,8 @@
 // expect: this model branches on its state: use myriad::select.*scalar_only
 // SPDX-License-Identifier: MIT
 // Right-hand sides that the loop cannot call, or not for a pack of instances, which has no single truth value.
-// clang-format off: the first header is precompiled
+// The first header is precompiled.
+// clang-format off
 #include <myriad/instantiate.hpp>
 #include <algorithm>
 #include <cmath>
