@@ -52,6 +52,11 @@ class Doses:
         return made
 
     @property
+    def parts(self) -> list[Doses]:
+        """Those of each state."""
+        return [self]
+
+    @property
     def values(self) -> list[Any]:
         """All expressions of it."""
         others = (self.every, self.count, self.until, self.rate, self.duration, self.lag, self.bioavailability)
@@ -82,6 +87,10 @@ class Doses:
                              do={target: target + multiply(self.bioavailability, amount)}))
             made[-1].line = self.line
         return made
+
+    def hooks(self) -> tuple[dict[Any, Any], dict[Any, Any]]:
+        """What is assigned at the start and at the end of a phase: nothing."""
+        return {}, {}
 
     def inflow(self) -> Any:
         """What infusions add to the derivative of the state, a function of time."""

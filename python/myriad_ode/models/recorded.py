@@ -19,6 +19,7 @@ from ..symbolic.node import Node, symbols_of, text, walk
 from ..symbolic.table import tables_of
 from ..symbolic.whole_and_real import generic_problem
 from .any_model import AnyModel, names_of
+from .dose_table import DoseTable
 from .doses import Doses
 from .event import Event, Stop, stop
 from .latex import model_html, model_latex
@@ -172,8 +173,9 @@ class RecordedModel(AnyModel):
         made._made = {}
         return made
 
-    def with_doses(self: Recorded, *several: Doses) -> Recorded:
-        """The model whose states get these doses, from `my.doses(...)`, besides what the model itself does."""
+    def with_doses(self: Recorded, *several: Doses | DoseTable) -> Recorded:
+        """The model whose states get these doses, from `my.doses(...)` or `my.dose_table(...)`, besides what the model
+        itself does."""
         line, made, given, reader = users_line(), self.changeable(), self._as_given, self._reader
         made.line = line
         for part in ("rhs", "events", "stops", "triggers", "noise", "observed", "initialise", "hidden"):
@@ -185,11 +187,11 @@ class RecordedModel(AnyModel):
             names.append(sym.free_name(wanted, [*names, *self._reserved]))
             return names[-1]
 
+        wrong = next((one for one in several if not isinstance(one, (Doses, DoseTable))), None)
+        if wrong is not None:
+            raise Error(f"with_doses gets a {type(wrong).__name__}{at(line)}: make it by my.doses(state, amount, at=...)")
         stops = []
-        for one in several:
-            if not isinstance(one, Doses):
-                raise Error(f"with_doses gets a {type(one).__name__}{at(line)}: make it by my.doses(state, amount, "
-                            "at=...)")
+        for one in [part for table in several for part in table.parts]:
             target = reader.target(self.aliases.get(one.into, one.into), "doses")
             if target not in made.equations:
                 raise Error(f"doses go into {target.value[1]}{at(one.line)}, which is no state of the model: choose one "
@@ -198,6 +200,9 @@ class RecordedModel(AnyModel):
             names += [symbol.value[1] for symbol in symbols_of(one.values)]
             made.equations[target] = add(made.equations[target], one.inflow())
             stops += one.stops(target, free_name)
+            at_start, at_end = one.hooks()
+            made.initialise = [*made.initialise, *reader.assignments(at_start, "initialise")]
+            made.finalise = [*made.finalise, *reader.assignments(at_end, "finalise")]
         made.stops = [*made.stops, *reader.stops(stops)]
         made.rhs = list(made.equations.values())
         made._collect(list(made.equations))
