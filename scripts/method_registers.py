@@ -21,7 +21,7 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests" / "cuda"))
 sys.dont_write_bytecode = True
 from check_resources import compile_command, read_report  # noqa: E402
-from methods import METHODS  # noqa: E402
+from methods import ORDINARY  # noqa: E402
 
 SIZES = (2, 4, 8, 16)
 FEATURES = {
@@ -74,7 +74,7 @@ def table(arguments, real):
     """Lines of one table."""
     lines = ["| method | " + " | ".join(f"n = {n}" for n in SIZES) + " |", "|---" * (1 + len(SIZES)) + "|"]
     with ThreadPoolExecutor(arguments.jobs) as pool:
-        for method, used in zip(METHODS, pool.map(lambda method: resources(arguments, method, real), METHODS)):
+        for method, used in zip(ORDINARY, pool.map(lambda method: resources(arguments, method, real), ORDINARY)):
             lines.append(f"| `{method}` | " + " | ".join(cell(used[n]) for n in SIZES) + " |")
             print(f"{real}: {method}", file=sys.stderr)
     return lines

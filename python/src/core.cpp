@@ -27,8 +27,9 @@
 #include "ensemble_arrays.hpp"
 #include "myriad/host/chunks/idle_engines.hpp"
 #include "myriad/host/core/instruction_set.hpp"
-#include "myriad/kernel/methods/method_list.hpp"
 #include "myriad/kernel/stepper/sparse_lu.hpp"
+#include "myriad/kernel/stepper/step.hpp"
+#include "myriad/methods.hpp"
 #include "myriad/version.hpp"
 #include "option_bindings.hpp"
 #include "repeated_call.hpp"
@@ -44,6 +45,27 @@ using namespace nb::literals;
 
 namespace myriad::python {
 namespace {
+
+/// What the package asks of a method: its stages, whether it takes fixed steps alone, whether it solves linear systems,
+/// and the noise that it takes, which is none of a method for ordinary equations.
+template <class Method>
+nb::tuple facts_of() {
+    const char* noise = "none";
+    if constexpr (detail::stochastic_method<Method>) {
+        switch (Method::noise) {
+            case noise_taken::any:
+                noise = "any";
+                break;
+            case noise_taken::additive:
+                noise = "additive";
+                break;
+            case noise_taken::diagonal:
+                noise = "diagonal";
+                break;
+        }
+    }
+    return nb::make_tuple(Method::stages, Method::embedded_order == 0, detail::solves_linear_systems<Method>, noise);
+}
 
 /// The report, and the exception that ended the call early or None.
 template <class R>
@@ -235,9 +257,11 @@ NB_MODULE(_core, m) {
     m.def("may_use_gpus", &host::may_use_gpus);
     m.def("driver_version", &gpu::driver_version);
     m.def("interpreted_methods", &interpreted_methods);
-#define METHOD_NAME(method) #method,
-    m.attr("methods") = std::vector<std::string>{MYRIAD_METHODS(METHOD_NAME)};
-#undef METHOD_NAME
+    nb::dict methods;
+#define MYRIAD_ADD_METHOD(method) methods[#method] = facts_of<method>();
+    MYRIAD_METHODS(MYRIAD_ADD_METHOD)
+#undef MYRIAD_ADD_METHOD
+    m.attr("methods") = methods;
     m.def("tape_operations", &tape_operations);
     m.attr("component_kinds") = component_kinds();
     nb::dict limits;

@@ -251,6 +251,8 @@ def test_pictures_tables_and_datasets():
     assert len(words) == 2 and words[0].startswith("stable focus\nx = ") and words[0].endswith(" %")
     assert sorted(line.get_xdata()[0] for line in axes.lines) == pytest.approx([-1, 1])
     assert found.plot("v", "x").get_xlabel() == "v at the start"
+    with pytest.raises(my.Error, match="over two states: give two, or neither"):
+        found.plot("x", "x")
     data = my.attractors(free, {k: 0.5}, start={x: my.uniform(-2, 2), v: my.normal(0, 1)}, draws=30, **options)
     assert len(data.plot().get_legend().get_texts()) == 2
     table = pytest.importorskip("pandas") and found.to_pandas()

@@ -133,8 +133,25 @@ def test_an_array_in_place_of_a_name_is_told_by_its_shape(ball):
 
 
 def test_shared_values_are_single_numbers(ball):
-    with pytest.raises(my.Error, match="'g' is shared by all instances and has 2 values"):
-        my.solve(ball, {"loss": 0.5, "g": [1.0, 2.0]}, start={"height": 1, "speed": 0}, time=(0, 1))
+    cure = r"give one number, or make it a parameter where the model is made, as by my.parameter\(\"g\"\) instead of"
+    options = dict(start={"height": 1, "speed": 0}, time=(0, 1))
+    for call, sweep in [(call, sweep) for call in (my.solve, my.study) for sweep in (
+            {"loss": 0.5, "g": [1.0, 2.0]}, my.grid(g=[1.0, 2.0], loss=[0.5, 0.6, 0.7]))]:
+        with pytest.raises(my.Error, match=f"'g' is shared by all instances and has 2 values: {cure}"):
+            call(ball, sweep, **options)
+    with pytest.raises(my.Error, match=f"'g' is shared by all instances and is random: {cure}"):
+        my.study(ball, {"loss": 0.5, "g": my.uniform(1, 2)}, draws=3, **options)
+    with pytest.raises(my.Error, match="'transient_phases' is shared .* and has 2 values: .* and make a call for each"):
+        my.study(my.with_tangents(ball), my.grid(loss=0.5, g=1.0, transient_phases=[1, 2]), **options)
+
+
+def test_an_unknown_name_of_a_result_is_an_error_that_reads_as_it_is_written(ball):
+    run = my.solve(ball, {"loss": 0.5, "g": 1.0}, start={"height": 1, "speed": 0}, time=(0, 0.1))
+    for kind in (my.Error, KeyError):
+        with pytest.raises(kind) as raised:
+            run["weight"]
+    assert str(raised.value).startswith("'weight' is no name of the results: ")
+    assert run.get("weight") is None
 
 
 def test_the_compilers_first_message(oscillator):

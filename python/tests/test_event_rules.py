@@ -223,3 +223,11 @@ def test_a_ball_past_its_surface_that_comes_back_has_not_hit_it_again():
     count = (impact < 6).sum(axis=1)
     clear = (np.abs(impact - 6).min(axis=1) > 0.1) & (count < 20)
     assert clear.sum() > 200 and np.array_equal(run[n][clear], count[clear])
+
+
+@pytest.mark.parametrize("exponent", [-900, -1000, -1020, -1030, -1040, -1050])
+def test_events_of_states_that_are_denormal_numbers_are_those_of_others(exponent):
+    unit = 2.0**exponent
+    run = solved({x: v, v: -1.3 * unit}, my.event(x, direction="falling", do={v: -0.8 * v, n: n + 1}), {n: 0}, size=1,
+                 start={x: unit, v: 0.0}, time=(0, 6))
+    assert run.status[0] == "success" and run[n][0] == 3

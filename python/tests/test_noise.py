@@ -101,6 +101,33 @@ def test_a_state_that_noise_alone_moves_is_not_taken_for_a_constant():
     assert my.model(equations).stops and not my.model(equations, noise={w: 1}).stops
 
 
+@pytest.fixture(scope="module")
+def sharing():
+    """Two states that share two processes whose noise does not commute: Debrabant and Roessler, Appl. Numer. Math. 59
+    (2009) 582-594."""
+    r = np.sqrt(2)
+    return my.model({x: -273 / 512 * x, y: -x / 160 + (r / 8 - 785 / 512) * y},
+                    noise={x: {W: x / 4, V: x / 16}, y: {W: (1 - 2 * r) / 4 * y, V: x / 10 + y / 16}})
+
+
+def test_means_by_a_weak_method_are_those_of_the_equation(sharing):
+    end, paths = 3, 100_000
+    run = my.solve(sharing, start={x: 1, y: 1}, time=(0, end), step=end / 16, paths=paths, seed=2, method="dri1")
+    for values, exact, bias in (
+            (run["x"]**2, np.exp(-end), 0.0015), (run["x"] * run["y"], np.exp(-2 * end), 0.0073),
+            (run["y"]**2, (149 * np.exp(-2.5 * end) + np.exp(-end)) / 150, 0.0295)):  # of the method with such steps
+        assert abs(values.mean() - exact) < 4 * values.std() / paths**0.5 + bias * exact
+
+
+def test_a_stiff_drift_takes_long_steps_by_an_implicit_method():
+    relaxing, paths, h = my.model({x: 0, y: k * (x - y)}, noise={y: sigma}), 50_000, 0.1
+    run = my.solve(relaxing, {k: 1000, sigma: 2}, start={x: 3, y: 0}, time=(0, 10 * h), step=h, paths=paths, seed=2,
+                   method="linearly_implicit_euler_maruyama")
+    variance = 2**2 * h / ((1 + 1000 * h)**2 - 1)  # of y1 - x = (y - x + sigma dW) / (1 + k h)
+    assert abs(run["y"].mean() - 3) < 4 * (variance / paths)**0.5
+    assert abs(run["y"].var() / variance - 1) < 4 * (2 / paths)**0.5
+
+
 # -- What a path depends on --------------------------------------------------------------------------------------------
 
 @pytest.fixture(scope="module")
@@ -281,9 +308,10 @@ many = my.model({x: 0}, noise={x: {f"W{i}": 1 for i in range(257)}})
 @pytest.mark.parametrize("model, more, said", [
     (diagonal(), dict(step=None), "euler_maruyama takes fixed steps: give step="),
     (diagonal(), dict(method="tsitouras_5"), 'the model has noise, which tsitouras_5 would ignore: give '
-     'method="euler_maruyama", "milstein", "stochastic_heun", "sra1" or "sriw1"'),
+     'method="euler_maruyama", "milstein", '),
     (diagonal(), dict(method="rodas_5p"), "the model has noise, which rodas_5p would ignore"),
     (diagonal(), dict(method="em"), "there is no method 'em': use \"euler_maruyama\""),
+    (diagonal(), dict(method="ImplicitEM"), "no method 'ImplicitEM': use \"linearly_implicit_euler_maruyama\""),
     (diagonal(), dict(control="pi_control"), "euler_maruyama takes fixed steps and has no step-size control"),
     (my.model({x: -x}), dict(method="milstein"), "milstein is for equations with noise, and the model has none"),
     (my.model({x: -x}), dict(paths=3), "paths is 3, and the model has no noise"),
@@ -296,6 +324,7 @@ many = my.model({x: 0}, noise={x: {f"W{i}": 1 for i in range(257)}})
     (crossed, dict(method="sriw1"), "sriw1 takes noise whose factor of a state depends on no other state"),
     (shared_noise(), dict(method="sriw1"), "sriw1 takes a Wiener process for each state"),
     (diagonal(), dict(method="sri1"), "there is no method 'sri1': use \"sriw1\""),
+    (diagonal(), dict(method="DRI1"), "there is no method 'DRI1': use \"dri1\""),
     (diagonal(), dict(method="sra1"), "sra1 takes noise that depends on no state, and that of the model depends on x"),
     (many, {}, "the model has 257 Wiener processes, and there may be 256 in double precision"),
     (diagonal(), dict(free=[k]), "the model has noise, and derivatives along its paths are not there yet"),

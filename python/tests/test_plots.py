@@ -100,6 +100,9 @@ class ARun:
     def __getitem__(self, name):
         return self.final[name]
 
+    def _along(self, dimension, name):
+        return {"phase": self.records, "sample": self.samples}[dimension].get(name)
+
 
 def test_a_run_draws_its_components_by_name_or_symbol():
     k, x = my.parameter("k"), my.state("x")
@@ -112,6 +115,33 @@ def test_a_run_draws_its_components_by_name_or_symbol():
         Plots(run).bifurcation("k", "v")
     with pytest.raises(my.Error, match="no grid over k and B alone"):
         Plots(run).map("k", "B", "x")
+
+
+def test_outputs_are_drawn_where_they_are_recorded_or_sampled():
+    model = my.read_xpp("aux twice=2*x\nx'=-x\n")
+    run = my.solve(model, my.grid(x=[1.0, 2.0]), time=(0, 1), samples=5, record=["x"], phases=2, interpreted=True)
+    assert run.plot.time_series("twice").lines[1].get_ydata().tolist() == run["twice_sample"][1].tolist()
+    assert run.plot.phase_portrait("x", "twice").lines[0].get_xydata()[0].tolist() == [1, 2]
+    assert run.plot.bands("twice").get_ylabel() == "twice"
+    assert len(run.plot.bifurcation("x", "twice").lines[0].get_ydata()) == 4
+
+
+def test_a_run_refuses_to_draw_what_is_not_there():
+    run = ARun(my.grid(k=[1.0, 2.0], B=[3.0, 4.0]), records={"x": np.ones((4, 3))}, samples={"x": np.ones((4, 3))})
+    for draw, message in [
+            (lambda: Plots(run).map("k", "k", "x"), "k is named twice"),
+            (lambda: Plots(run).map("k", "B", "x", phase=3), "phase is 3: 3 phases were recorded"),
+            (lambda: Plots(run).time_series("x", instances="all"), "instances 'all': give numbers from 0 to 3"),
+            (lambda: Plots(run).time_series("x", instances=[]), r"instances \[\]: give numbers"),
+            (lambda: Plots(run).time_series("x", axes=3), "axes= is of type int: give axes of matplotlib"),
+            (lambda: Plots(run).bands("x", quantiles=[-1, 2]), r"quantiles are \[-1.0, 2.0\]: give ascending"),
+            (lambda: Plots(run).bands("x", quantiles=[]), r"quantiles are \[\]"),
+            (lambda: Plots(ARun(my.grid(k=[]), samples={"x": np.ones((0, 3))})).time_series("x"), "no instances"),
+            (lambda: plots.parameter_map([], [1.0], np.ones((0, 1))), "a map takes at least one of each")]:
+        with pytest.raises(my.Error, match=message):
+            draw()
+    empty = ARun(my.grid(k=[]), records={"x": np.ones((0, 3))})
+    assert not len(Plots(empty).bifurcation("k", "x").lines[0].get_xdata())
 
 
 def test_lines_are_told_apart_by_what_differs():

@@ -384,3 +384,16 @@ def test_records_and_samples_do_not_fit_into_one_table(tmp_path, method):
     pytest.importorskip("pandas" if method == "to_csv" else "pyarrow")
     with pytest.raises(my.Error, match=r"do not fit into one table: use to_netcdf\(path\)"):
         getattr(solved(), method)(tmp_path / "file")
+
+
+@pytest.mark.parametrize("method", ["save", "to_mat", "to_netcdf", "to_csv"])
+def test_a_path_that_cannot_be_written_to_is_told_by_its_own_name(tmp_path, method):
+    for package in {"to_mat": ["scipy"], "to_netcdf": ["xarray", "netCDF4"], "to_csv": ["pandas"]}.get(method, ()):
+        pytest.importorskip(package)
+    x = my.state("x")
+    run = my.solve(my.model({x: -x}), start={x: 1.0}, time=(0, 1))
+    missing = tmp_path / "missing" / "run"
+    with pytest.raises(my.Error, match=f"'{missing}' cannot be written: there is no folder '{missing.parent}'"):
+        getattr(run, method)(missing)
+    with pytest.raises(my.Error, match=f"'{tmp_path}' is a folder: give the path of a file in it"):
+        getattr(run, method)(tmp_path)

@@ -108,6 +108,12 @@ def test_one_direction_begins_at_its_own_end():
         down["up", x]
 
 
+def test_steady_states_of_parameters_that_are_not_finite_are_refused():
+    for value in (np.nan, np.inf):
+        with pytest.raises(my.Error, match=f"'a' is {value}: give a finite number"):
+            my.steady_states(cusp, {a: value}, start={x: 1.0})
+
+
 def test_orbits_that_fail_are_nan_from_there_on():
     result = my.hysteresis(my.model({x: a + x**2}), {a: [-1.0, -0.5, 0.5]}, start={x: -2.0}, time=(0, 1), transient=40,
                            phases=4, interpreted=True)
@@ -118,6 +124,8 @@ def test_orbits_that_fail_are_nan_from_there_on():
     assert np.isnan(lost.interval()).all()
     with pytest.raises(my.Error, match="no points of y: there are those of x"):
         lost["up", y]
+    with pytest.raises(my.Error, match=r'give direction and state, as in result\["up", x\]'):
+        lost[x]
 
 
 def test_pictures_and_datasets_of_hysteresis():
@@ -125,7 +133,9 @@ def test_pictures_and_datasets_of_hysteresis():
     matplotlib.use("Agg")
     result = my.hysteresis(cusp, {a: np.linspace(-1, 1, 11)}, start={x: -2.0}, time=(0, 1), transient=40, phases=4,
                            interpreted=True)
-    assert [line.get_label() for line in result.plot(x).lines] == ["up", "down"]
+    up, down = result.plot(x).lines
+    assert (up.get_label(), down.get_label()) == ("up", "down")
+    assert up.get_markersize() > down.get_markersize()  # so that up shows around down
     dataset = pytest.importorskip("xarray") and result.to_xarray()
     assert dataset["x"].dims == ("direction", "a", "start", "phase")
     matplotlib.pyplot.close("all")

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Stochastic equations in double precision: more Wiener processes than a block has numbers for, and integrals of one.
-//
+// Stochastic equations in double precision: more Wiener processes than a block has numbers for, integrals of one, and
+// factors of single processes.
 //
 // limit: integrate_ensemble<solvable, milstein> registers 144 stack 0 spill 0
 // limit: integrate_ensemble<additive, sra1> registers 152 stack 40 spill 0
+// limit: integrate_ensemble<sharing, dri1> registers 128 stack 0 spill 0
 
 #include <myriad/cuda/kernel.cuh>
 #include <myriad/methods.hpp>
@@ -17,3 +18,4 @@ constexpr auto constant = myriad::shared_placement::constant_bank;
         const __grid_constant__ myriad::detail::launch_arguments<Model, double, constant>);
 INSTANTIATE(noisy::solvable, milstein)
 INSTANTIATE(noisy::additive, sra1)
+INSTANTIATE(noisy::sharing, dri1)

@@ -9,6 +9,8 @@ namespace validation {
 namespace {
 
 constexpr int repetitions = 3, times_over = 16;
+// A run takes milliseconds, so that on a machine that others use too a few of them may all be disturbed.
+constexpr double seconds_of_repetitions = 0.3;
 
 double median_error(const outcome& o, const references& r, std::size_t instances) {
     std::vector<double> errors;
@@ -35,8 +37,10 @@ void measure_work(session& s, const problem& p, const references& r) {
     double unit = 0;
     const auto add = [&](const std::string& who, double setting, auto&& run, double instances) {
         outcome best = run();
-        for (int k = 1; k < repetitions; ++k) {
+        double spent = best.seconds;
+        for (int k = 1; k < repetitions || (!s.quick() && spent < seconds_of_repetitions); ++k) {
             const outcome again = run();
+            spent += again.seconds;
             if (again.seconds < best.seconds) best = again;
         }
         if (unit == 0) unit = best.seconds / instances;

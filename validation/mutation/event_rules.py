@@ -39,7 +39,7 @@ MUTATIONS = {
     "sides_kept_after_trial": ("side_resolver.hpp",
                                "abs(step.g1[j]) > own.near.past(j) ? sign_of(step.g1[j]) : side[j]", "side[j]",
                                "after a trial the side is the sign"),
-    "no_least_rounding": ("event_functions.hpp", "constexpr R least = smallest_normal_of<R> / epsilon_of<R>;",
+    "no_least_rounding": ("event_functions.hpp", "constexpr R least = R(256) * smallest_normal_of<R>;",
                           "constexpr R least = R(0);", "denormal states have a rounding error"),
     "equal_weights": ("event_functions.hpp", "static_cast<R>(1 + (turns - static_cast<double>("
                       "static_cast<long long>(turns))))", "static_cast<R>(1 + 0 * turns)",

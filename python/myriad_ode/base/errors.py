@@ -26,6 +26,12 @@ class UnknownOption(Error, TypeError):
     """A call names an option that does not exist."""
 
 
+class UnknownName(Error, KeyError):
+    """A mapping is asked for a name that it does not have."""
+
+    __str__ = Exception.__str__  # which, unlike a KeyError's, shows the message as it is
+
+
 #: In a thread that the package has started, the line of the user's call, if it has set one.
 caller = threading.local()
 

@@ -27,6 +27,8 @@ def axes_of(axes: Axes | None, **figure: Any) -> Any:
         from matplotlib import pyplot
     except ImportError:
         raise Error("pictures need the package matplotlib: `pip install matplotlib`") from None
+    if axes is not None and not hasattr(axes, "plot"):
+        raise Error(f"axes= is of type {type(axes).__name__}: give axes of matplotlib, as plt.subplots() returns them")
     return pyplot.subplots(layout="constrained", **figure)[1] if axes is None else axes
 
 
@@ -45,6 +47,16 @@ def numbers(array: Any, what: str, dimensions: tuple[int, ...]) -> np.ndarray:
         wanted = " or ".join(map(str, dimensions))
         raise Error(f"{what} has shape {found.shape}: give an array of {wanted} dimensions")
     return found
+
+
+def checked_quantiles(quantiles: Any) -> np.ndarray:
+    """Quantiles in ascending order, each with its counterpart."""
+    of = np.asarray(quantiles, float)
+    if (of.ndim != 1 or not of.size or not ((of >= 0) & (of <= 1)).all() or (np.diff(of) <= 0).any()
+            or not np.allclose(of + of[::-1], 1)):
+        raise Error(f"quantiles are {of.tolist()}: give ascending ones from 0 to 1, each with its counterpart, as in "
+                    "[0.05, 0.5, 0.95]")
+    return of
 
 
 def look(usual: Mapping[str, Any], style: Mapping[str, Any], artist: str = "lines.Line2D") -> dict[str, Any]:

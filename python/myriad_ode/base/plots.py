@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .errors import Error
-from .plot_parts import (are_classes, axes_of, classes_of, colours, colour_scale, distinct, edges, is_geometric,
-                         label_of, legend, logarithmic as make_logarithmic, look, numbers)
+from .plot_parts import (are_classes, axes_of, checked_quantiles, classes_of, colours, colour_scale, distinct, edges,
+                         is_geometric, label_of, legend, logarithmic as make_logarithmic, look, numbers)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -39,7 +39,7 @@ def bifurcation(x: Any, y: Any, *, by: Any = None, xlabel: str | None = None, yl
     by = None if by is None else numbers(by, "by", (1,))
     if by is not None and len(by) != len(x):
         raise Error(f"by has {len(by)} values and x {len(x)}: give one per instance")
-    y = y.reshape(len(x), -1)
+    y = y.reshape(len(x), y.shape[1] if y.ndim == 2 else 1)
     axes = axes_of(axes, figsize=(7, 4.2))
     across, up = np.repeat(x, y.shape[1]), y.ravel()
     shown = np.isfinite(across) & np.isfinite(up)
@@ -93,6 +93,8 @@ def parameter_map(x: Any, y: Any, z: Any, *, xlabel: str | None = None, ylabel: 
     if z.shape != (len(x), len(y)):
         raise Error(f"z has shape {z.shape} for {len(x)} values of x and {len(y)} of y: give it the shape "
                     f"({len(x)}, {len(y)})")
+    if not z.size:
+        raise Error(f"there are {len(x)} values of x and {len(y)} of y: a map takes at least one of each")
     axes = axes_of(axes, figsize=(6.4, 4.8))
     axes.set_facecolor("0.85")
     if names is None and not are_classes(z):
@@ -155,13 +157,10 @@ def bands(t: Any, y: Any, quantiles: Sequence[float], *, xlabel: str | None = No
     many on either side, each two that belong together bound a band, and one in the middle is a line. Further arguments
     go to matplotlib's `fill_between`."""
     ylabel = label_of(y, ylabel)
-    t, y, of = numbers(t, "t", (1,)), numbers(y, "y", (2,)), np.asarray(quantiles, float)
-    if of.ndim != 1 or y.shape != (len(of), len(t)):
+    t, y, of = numbers(t, "t", (1,)), numbers(y, "y", (2,)), checked_quantiles(quantiles)
+    if y.shape != (len(of), len(t)):
         raise Error(f"y has shape {y.shape} for {of.size} quantiles and {len(t)} times: give it the shape "
                     f"({of.size}, {len(t)})")
-    if (np.diff(of) <= 0).any() or not np.allclose(of + of[::-1], 1):
-        raise Error(f"quantiles are {of.tolist()}: give ascending ones, each with its counterpart, as in "
-                    "[0.05, 0.5, 0.95]")
     axes = axes_of(axes, figsize=(7, 3.6))
     from matplotlib.colors import to_rgb
     colour, pairs = np.array(to_rgb(style.pop("color", colours[0]))), len(of) // 2

@@ -33,8 +33,8 @@ def legends(found: Any, across: str, up: str) -> dict[int, str]:
 def _pair(found: Any, values: Mapping[str, Array], x: Component | None, y: Component | None) -> tuple[str, str, bool]:
     """The states along the axes, and whether they are those of a grid."""
     given = [name_of(one) for one in (x, y) if one is not None]
-    if len(given) == 1:
-        raise Error("a picture of basins is over two states: give both, or neither")
+    if len(given) == 1 or len(set(given)) < len(given):
+        raise Error("a picture of basins is over two states: give two, or neither")
     grid = [name for name, of in found.start.axes if len(of) > 1]
     if len(grid) == 2 and all(name in found.start.coordinates for name in grid) and (not given or set(given) ==
                                                                                       set(grid)):

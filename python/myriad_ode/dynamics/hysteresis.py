@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from ..base import plots
-from ..base.errors import Error
+from ..base.errors import Error, UnknownName
 from ..base.packages import package
 from ..models.components import name_of
 from ..sweeps.inputs import real
@@ -40,9 +40,11 @@ class Hysteresis:
 
     def __getitem__(self, key: tuple[str, Component]) -> Array:
         """`result["up", x]`: the points of a state on the way up, (values, starts, points)."""
+        if not isinstance(key, tuple) or len(key) != 2:
+            raise Error(f"{key!r} has no direction: give direction and state, as in result[\"up\", x]")
         direction, state = key
         if direction not in self.branches:
-            raise KeyError(f"there is no way '{direction}': there is {', '.join(self.branches)}")
+            raise UnknownName(f"there is no way '{direction}': there is {', '.join(self.branches)}")
         return self.branches[direction][self._kept(state)]
 
     def _kept(self, state: Component) -> str:
@@ -73,13 +75,17 @@ class Hysteresis:
         return (float(there.min()), float(there.max())) if there.size else (np.nan, np.nan)
 
     def plot(self, y: Component, *, axes: Axes | None = None, **style: Any) -> Any:
-        """The points of a state over the parameter, in a colour for each direction. Further arguments go to
-        matplotlib's `plot`. Returns the axes."""
+        """The points of a state over the parameter, in a colour for each direction; those of the way up are larger, so
+        that they show where both ways have the same. Further arguments go to matplotlib's `plot`. Returns the axes."""
         name = self._kept(y)
         rows = [np.reshape(of[name], (len(self.values), -1)) for of in self.branches.values()]
         words = np.repeat(list(self.branches), len(self.values))
-        return plots.bifurcation(np.tile(self.values, len(rows)), np.concatenate(rows), by=words, xlabel=self.parameter,
+        axes = plots.bifurcation(np.tile(self.values, len(rows)), np.concatenate(rows), by=words, xlabel=self.parameter,
                                  ylabel=name, axes=axes, **{"markersize": 2.5, **style})
+        if len(rows) > 1:
+            up = axes.lines[-len(rows)]
+            up.set_markersize(2 * up.get_markersize())
+        return axes
 
     def to_xarray(self) -> xarray.Dataset:
         """The points by state along direction, parameter, start and phase."""

@@ -56,7 +56,8 @@ class SteadyState:
 
 
 def _shown(value: complex) -> str:
-    return f"{value.real:.4g}" if value.imag == 0 else f"{value.real:.4g}{value.imag:+.4g}i"
+    real_part = f"{value.real + 0.0:.4g}"  # no minus sign of zero
+    return real_part if value.imag == 0 else f"{real_part}{value.imag:+.4g}i"
 
 
 def kind_of(eigenvalues: Array, error: Array) -> str:
@@ -101,6 +102,8 @@ class Equations:
                                 "parameter")
                 if given.get(name) is None:
                     raise Error(f"the value of '{name}' is missing: give it in the sweep")
+                if not np.isfinite(given[name]).all():
+                    raise Error(f"'{name}' is {given[name]}: give a finite number")
                 self._known[symbol] = given[name]
         self._derivatives = derivatives(self._functions, self._symbols)
 

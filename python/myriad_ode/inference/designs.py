@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..base.errors import Error
+from ..base.errors import Error, UnknownName
 from ..models.components import by_component
 from ..sweeps.inputs import by_name, whole
 from ..sweeps.sweep import Sweep, zip as together
@@ -37,7 +37,7 @@ class Indices:
 
     def __getitem__(self, measure: str) -> dict[str, Any]:
         if measure not in self.measures:
-            raise KeyError(f"there is no '{measure}': there are {', '.join(self.measures)}")
+            raise UnknownName(f"there is no '{measure}': there are {', '.join(self.measures)}")
         return self.measures[measure]
 
     def __str__(self) -> str:

@@ -17,10 +17,15 @@ def seconds_to_compile(source: str, stages: int) -> float:
     return 1.5 + len(source) * (1 + stages / 8) / 3000
 
 
+def _in_words(seconds: float) -> str:
+    """How long that is on a computer of which nobody knows how fast and how busy it is."""
+    return "some seconds" if seconds < 8 else "up to a minute" if seconds < 30 else "minutes"
+
+
 @contextlib.contextmanager
 def told(what: str, seconds: float) -> Iterator[None]:
     """Says on standard error what is being compiled, if it takes longer than half a second."""
-    timer = threading.Timer(_patience, lambda: print(f"compiling {what} (about {max(1, round(seconds))} s)",
+    timer = threading.Timer(_patience, lambda: print(f"compiling {what} ({_in_words(seconds)}, once)",
                                                      file=sys.stderr, flush=True))
     timer.daemon = True
     timer.start()

@@ -91,6 +91,13 @@ class Components:
         name = name_of(key)
         return self.aliases.get(name, name)
 
+    def unknown(self, name: str, known: Iterable[str], what: str) -> Error:
+        """The error of a name that is no component, or none of the known ones."""
+        if name in self.outputs and name not in self.place:
+            return Error(f"'{name}' is an output, which a run computes from its results, and no {what}: name the "
+                         "components that it follows from")
+        return unknown(name, known, what)
+
     def completed(self, given: Mapping[str, Any], begin: Any) -> dict[str, Any]:
         """What is given by name, and the defaults of what is not: those that are expressions follow what is given."""
         values, under_way = dict(given), []
@@ -151,6 +158,6 @@ class Components:
             kind, number = self.place.get(name, ("", -1))
             if kind not in found:
                 known = [n for n, (k, _) in self.place.items() if k in found]
-                raise unknown(name, known, f"component of the model that {what} can name")
+                raise self.unknown(name, known, f"component of the model that {what} can name")
             found[kind].append(number)
         return [found[kind] for kind in some_kinds]

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..base.errors import Error, at, users_line
 from ..symbolic.numbers import is_whole
+from ..symbolic.symbols import symbol
 from .extended import Extended
 from .noise import refuse_derivatives
 from .recorded import RecordedModel
@@ -23,15 +24,16 @@ __all__ = ["with_tangents"]
 def with_tangents(model: AnyModel, vectors: int = 1, *, transient_phases: int = 0) -> WithTangents:
     """The model with tangent vectors: one gives the largest Lyapunov exponent, as many as there are states the full
     spectrum. They are orthonormalised at the end of every phase, and their growth is summed over the phases that follow
-    the first `transient_phases`: `exponents(run)` has the result. Phases should be short enough
+    the first `transient_phases`: `exponents(run)` has the result, and so have datasets, tables and files, as
+    "exponent_1_end", "exponent_2_end", ... Phases should be short enough
     (docs/writing_a_model.md). The number is a shared integer of the model, so that a sweep may set it anew, by its
     name."""
     return WithTangents(model, vectors, transient_phases)
 
 
 class WithTangents(Extended):
-    """A model with tangent vectors. Component c of tangent i is the state `<c>_tangent_<i>`, and the growth of tangent
-    i the accessory `growth_<i>`, counted from 1."""
+    """A model with tangent vectors. Component c of tangent i is the state `<c>_tangent_<i>`, the growth of tangent i
+    the accessory `growth_<i>`, and its exponent the output `exponent_<i>`, counted from 1."""
 
     not_interpreted = "it has tangents"
 
@@ -63,8 +65,10 @@ class WithTangents(Extended):
         mirror /= np.sqrt(sum(mirror * mirror))
         start = np.eye(n) - 2 * mirror[:, None] * mirror
         defaults = {"transient_phases": int(transient_phases), **dict(zip(tangents, start[:, :self.vectors].T.ravel()))}
+        time_summed = symbol("accessory", "time_summed")
+        exponents = {f"exponent_{i}": symbol("accessory", name) / time_summed for i, name in zip(numbers, growth)}
         super().__init__(model, {"state": tangents, "shared_integer": ["transient_phases"],
-                                 "accessory": [*growth, "time_summed", "phase_began"]}, defaults, "tangents")
+                                 "accessory": [*growth, "time_summed", "phase_began"]}, defaults, "tangents", exponents)
 
     def source(self) -> tuple[str, str]:
         """The text that kernels are compiled from, and the name of its struct."""

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Lyapunov exponents of a run of a model with tangents."""
+"""Lyapunov exponents of a run or a study of a model with tangents."""
 
 from __future__ import annotations
 
+from itertools import count, takewhile
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,17 +11,20 @@ import numpy as np
 from ..base.errors import Error, at, users_line
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from ..symbolic.types import Array
-    from .run import Run
 
 __all__ = ["exponents"]
 
 
-def exponents(run: Run) -> Array:
-    """The Lyapunov exponents of a run of a model `with_tangents`, per unit of time, by the natural logarithm: one row
-    per instance, the largest first. NaN if no phase was summed."""
-    names = [name for name in run.accessories if name.startswith("growth_")]
-    if not names or "time_summed" not in run.accessories:
-        raise Error(f"the model of this run has no tangents{at(users_line())}: solve my.with_tangents(model)")
+def exponents(run: Mapping[str, Array]) -> Array:
+    """The Lyapunov exponents of a run of a model `with_tangents`, or of a study that keeps `growth_1`, ... and
+    `time_summed`, per unit of time, by the natural logarithm: one row per instance, or the axes of the study, and the
+    largest first. NaN if no phase was summed."""
+    names = list(takewhile(run.__contains__, (f"growth_{i}_end" for i in count(1))))
+    if not names or "time_summed_end" not in run:
+        raise Error(f"there is no growth of tangents in this result{at(users_line())}: solve my.with_tangents(model), "
+                    "and let a study keep all, or growth_1, ... and time_summed")
     with np.errstate(invalid="ignore", divide="ignore"):
-        return np.stack([run[name] / run["time_summed"] for name in names], axis=1)
+        return np.stack([run[name] / run["time_summed_end"] for name in names], axis=-1)

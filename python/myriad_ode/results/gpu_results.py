@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .. import _core
-from ..base.errors import Error
+from ..base.errors import Error, UnknownName
 from ..sweeps.gpu_inputs import cuda
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ class DeviceResults:
         make = self._run._quantities[found].device
         if make is None:
             instead = ", or run.device[\"status_codes\"]" if found == "status" else ""
-            raise KeyError(f"there is no {found!r} on the GPU: ask run[{found!r}]{instead}")
+            raise UnknownName(f"there is no {found!r} on the GPU: ask run[{found!r}]{instead}")
         return _on_gpu(found, make)
 
     def samples(self, name: str | None) -> DeviceArray:

@@ -12,6 +12,7 @@ import numpy as np
 
 from .. import _core
 from ..base import component_kinds as kinds
+from ..base.errors import UnknownName
 from ..base.statuses import in_words
 from ..models.components import unknown
 from ..symbolic.node import Node
@@ -146,15 +147,15 @@ _renamed = {"samples_stored": "stored_samples", "time": "t"}
 _renamed_endings = {"_begin": "_start", "_samples": "_sample"}
 
 
-def unknown_quantity(name: str, there: Sequence[str]) -> KeyError:
+def unknown_quantity(name: str, there: Sequence[str]) -> UnknownName:
     """The error of a name that no quantity has, with the name that it has now."""
     now = _renamed.get(name, name)
     for before, after in _renamed_endings.items():
         if name.endswith(before):
             now = name.removesuffix(before) + after
     if now != name and now in there:
-        return KeyError(f"'{name}' has another name: use '{now}'")
-    return KeyError(str(unknown(name, there, "name of the results")))
+        return UnknownName(f"'{name}' has another name: use '{now}'")
+    return UnknownName(str(unknown(name, there, "name of the results")))
 
 
 def listed(quantities: Mapping[str, Quantity]) -> list[str]:

@@ -245,6 +245,12 @@ class Run(Mapping):
     def __getitem__(self, key: Component) -> Array:
         return self._quantities[self._find(key)].read()
 
+    def _along(self, dimension: str, name: str) -> Array | None:
+        """The values of a component or output along "phase" or "sample"; None if there are none."""
+        called = self._called.get(self._components.aliases.get(name, name), "")
+        quantity = self._quantities.get(called + {"phase": "", "sample": "_sample"}[dimension])
+        return quantity.read() if quantity is not None and quantity.along == dimension else None
+
     def _values_of(self, component: str) -> Array:
         """The values of a component or output, whatever else has its name. Those of states and accessories are found
         without what all quantities take to be listed, as functions of arrays ask for them in many short calls."""
@@ -260,12 +266,12 @@ class Run(Mapping):
     def _places_of(self, expression: Node) -> list[str | None]:
         """Where the values of an expression are known: along "phase" or "sample", and None for the end."""
         symbols = symbols_of([expression])
-        states = [s.value[1] for s in symbols if s.value[0] == "state"]
+        changing = [s.value[1] for s in symbols if s.value[0] in kinds.recorded]
         of_time = any(s is time for s in symbols)
         places: list[str | None] = [None]
-        if self._sampled and (states or of_time) and all(n in self._sampled for n in states):
+        if self._sampled and (changing or of_time) and all(n in self._sampled for n in changing):
             places.insert(0, "sample")
-        if (states or of_time) and all(n in self._recorded for n in states) and (self._records_time or not of_time):
+        if (changing or of_time) and all(n in self._recorded for n in changing) and (self._records_time or not of_time):
             places.insert(0, "phase")
         return places
 
@@ -273,13 +279,13 @@ class Run(Mapping):
         """The values of an expression at a place that `_places_of` has told."""
         at: Any
         if place == "sample":
-            at, states = self["t_sample"], self.samples
+            at, changing = self["t_sample"], self.samples
             shape = at.shape
         elif place == "phase":
-            at, states = self["t"] if self._records_time else None, self.records
-            shape = (at if at is not None else next(iter(states.values()))).shape
+            at, changing = self["t"] if self._records_time else None, self.records
+            shape = (at if at is not None else next(iter(changing.values()))).shape
         else:
-            at, states, shape = self["t_last"], self.states, (self.size,)
+            at, changing, shape = self["t_last"], self._last_values(kinds.recorded), (self.size,)
         known: dict[Any, Any] = {}
         for symbol in symbols_of([expression]):
             kind, name = symbol.value
@@ -287,8 +293,8 @@ class Run(Mapping):
                 known[symbol] = self._components.constants[symbol]
             elif symbol is time:
                 known[symbol] = at
-            elif kind == "state":
-                known[symbol] = states[name]
+            elif kind in kinds.recorded:
+                known[symbol] = changing[name]
             elif kind == "parameter":
                 known[symbol] = self.parameters[name][:, None] if place else self.parameters[name]
             else:
@@ -305,7 +311,7 @@ class Run(Mapping):
     def __contains__(self, name: object) -> bool:
         try:
             self[name]
-        except (KeyError, Error):
+        except Error:
             return False
         return True
 

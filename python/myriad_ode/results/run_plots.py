@@ -11,8 +11,10 @@ import numpy as np
 from ..base import plots
 from ..base.errors import Error
 from ..base.html import row
+from ..base.plot_parts import checked_quantiles
 from ..base.statuses import status_names
 from ..models.components import listed, name_of
+from ..sweeps.inputs import whole
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -38,6 +40,11 @@ class Plots:
 
     def _in_sweep(self, name: str) -> bool:
         return self._run.sweep is not None and name in self._run.sweep.names
+
+    def _samples_of(self, name: str) -> Array:
+        if (values := self._run._along("sample", name)) is None:
+            raise Error(f"there are no samples of {name}: give samples=, as in samples=200, to solve")
+        return values
 
     def _per_instance(self, name: str) -> Array:
         """A value for each instance: of the sweep, so that initial states are those given, else of the results."""
@@ -67,14 +74,15 @@ class Plots:
 
     def bifurcation(self, x: Component, y: Component, *, by: SomeComponents | None = None, axes: Axes | None = None,
                     **style: Any) -> Any:
-        """The recorded component y of every phase over the parameter x. Colours tell apart what comes from different
-        values of the components `by`: without, of the initial states that a grid varies; `by=()` has one colour."""
+        """The recorded component or output y of every phase over the parameter x. Colours tell apart what comes from
+        different values of the components `by`: without, of the initial states that a grid varies; `by=()` has one
+        colour."""
         x, y = name_of(x), name_of(y)
-        if y not in self._run.records:
+        if (recorded := self._run._along("phase", y)) is None:
             raise Error(f"{y} was not recorded: give record=dict(from_phase=..., states=[{y}]) to solve")
         names = self._starts_beside(x) if by is None else [name_of(one) for one in listed(by)]
         told, bylabel = self._told_apart(names)
-        return plots.bifurcation(self._per_instance(x), self._run.records[y], by=told, bylabel=bylabel,
+        return plots.bifurcation(self._per_instance(x), recorded, by=told, bylabel=bylabel,
                                  xlabel=self._varied(x) if self._in_sweep(x) else self._label(x),
                                  ylabel=self._label(y), axes=axes, **style)
 
@@ -83,11 +91,14 @@ class Plots:
         run = self._run
         if z == "status":
             return run.status_codes, z
-        if z in run.records:
-            recorded = run.records[z]
-            number = phase % recorded.shape[1]
+        if (recorded := self._run._along("phase", z)) is not None:
+            count = recorded.shape[1]
+            if not -count <= whole(phase, "phase") < count:
+                raise Error(f"phase is {phase}: {count} phases were recorded, so give a number from 0 to {count - 1}, "
+                            "or -1 for the last one")
+            number = phase % count
             last = number == recorded.shape[1] - 1
-            return recorded[:, phase], self._label(z, "at the end" + ("" if last else
+            return recorded[:, number], self._label(z, "at the end" + ("" if last else
                                                                      f" of phase {run.from_phase + number}"))
         kept = {**run.states, **run.accessories}
         values = np.asarray(kept[z] if z in kept else run[z])
@@ -95,9 +106,11 @@ class Plots:
 
     def map(self, x: Component, y: Component, z: Component, *, phase: int = -1,
             names: Sequence[str] | Mapping[int, str] | None = None, axes: Axes | None = None, **style: Any) -> Any:
-        """The component z over two axes of a grid, x and y: its value at the end, or in one recorded phase; failed
-        instances are left grey. z may be "status". `names` says what whole numbers stand for."""
+        """The component or output z over two axes of a grid, x and y: its value at the end, or in one recorded phase;
+        failed instances are left grey. z may be "status". `names` says what whole numbers stand for."""
         run, (x, y, z) = self._run, map(name_of, (x, y, z))
+        if x == y:
+            raise Error(f"{x} is named twice: name two axes of the grid")
         along = [] if run.sweep is None else [name for name, _ in run.sweep.axes]
         if sorted((x, y)) != sorted(name for name, values in (run.sweep.axes if along else ()) if len(values) > 1):
             raise Error(f"the sweep is no grid over {x} and {y} alone (its axes: {', '.join(along) or 'none'}): make "
@@ -115,8 +128,11 @@ class Plots:
     def _instances(self, instances: npt.ArrayLike | None) -> tuple[Array, list[str]]:
         """Numbers of instances and what tells them apart."""
         run = self._run
-        chosen = np.arange(min(run.size, 5)) if instances is None else np.atleast_1d(np.asarray(instances, int))
-        if chosen.ndim != 1 or not ((-run.size <= chosen) & (chosen < run.size)).all():
+        if not run.size:
+            raise Error("the run has no instances: there is nothing to draw")
+        chosen = np.atleast_1d(np.arange(min(run.size, 5)) if instances is None else np.asarray(instances))
+        if (chosen.ndim != 1 or not chosen.size or chosen.dtype.kind not in "iu"
+                or not ((-run.size <= chosen) & (chosen < run.size)).all()):
             raise Error(f"instances {instances!r}: give numbers from 0 to {run.size - 1}")
         chosen = chosen % run.size
         given = ({name: run.sweep.values(name) for name in run.sweep.coordinates} if run.sweep is not None else
@@ -129,42 +145,42 @@ class Plots:
 
     def time_series(self, y: Component, *, instances: npt.ArrayLike | None = None, axes: Axes | None = None,
                     **style: Any) -> Any:
-        """The samples of a state over time, for the first five instances or the given ones."""
+        """The samples of a state or an output over time, for the first five instances or the given ones."""
         run, y = self._run, name_of(y)
         chosen, labels = self._instances(instances)
-        if y not in run.samples:
-            raise Error(f"there are no samples of {y}: give samples=, as in samples=200, to solve")
+        sampled = self._samples_of(y)
         xlabel = f"t ({run.time_unit})" if run.time_unit else None
-        return plots.time_series(run.t_sample[chosen], run.samples[y][chosen], labels=labels, xlabel=xlabel,
+        return plots.time_series(run.t_sample[chosen], sampled[chosen], labels=labels, xlabel=xlabel,
                                  ylabel=self._label(y), axes=axes, **style)
 
     def bands(self, y: Component, *, quantiles: Sequence[float] = (0.05, 0.25, 0.5, 0.75, 0.95),
               axes: Axes | None = None, **style: Any) -> Any:
-        """Quantiles of a sampled state over time, of all instances that did not fail: bands between two that belong
-        together, and the median."""
+        """Quantiles of a sampled state or output over time, of all instances that did not fail: bands between two that
+        belong together, and the median."""
         run, y = self._run, name_of(y)
-        if y not in run.samples:
-            raise Error(f"there are no samples of {y}: give samples=, as in samples=200, to solve")
-        whole = ~run.failed
-        times = run.t_sample[whole]
+        sampled, of = self._samples_of(y), checked_quantiles(quantiles)
+        unfailed = ~run.failed
+        times = run.t_sample[unfailed]
         if not len(times) or not (times == times[0]).all():
             raise Error("instances were not sampled at the same times, or none has succeeded: give samples= as times, "
                         "or the same time domain to all")
         xlabel = f"t ({run.time_unit})" if run.time_unit else None
-        return plots.bands(times[0], np.quantile(run.samples[y][whole], quantiles, axis=0), quantiles, xlabel=xlabel,
+        return plots.bands(times[0], np.quantile(sampled[unfailed], of, axis=0), quantiles, xlabel=xlabel,
                            ylabel=self._label(y), axes=axes, **style)
 
     def phase_portrait(self, x: Component, y: Component, *, instances: npt.ArrayLike | None = None,
                        axes: Axes | None = None, **style: Any) -> Any:
-        """The samples of one state over another; without samples the points recorded at the ends of phases.
+        """The samples of one state or output over another; without samples the points recorded at the ends of phases.
         For the first five instances or the given ones."""
-        run, x, y = self._run, name_of(x), name_of(y)
+        x, y = name_of(x), name_of(y)
         chosen, labels = self._instances(instances)
-        points = not (x in run.samples and y in run.samples)
-        kept = run.records if points else run.samples
-        if x not in kept or y not in kept:
+        of_x, of_y = self._run._along("sample", x), self._run._along("sample", y)
+        points = of_x is None or of_y is None
+        if points:
+            of_x, of_y = self._run._along("phase", x), self._run._along("phase", y)
+        if of_x is None or of_y is None:
             raise Error(f"there are no samples of {x} and {y}, nor records of both: give samples= or record= to solve")
-        return plots.phase_portrait(kept[x][chosen], kept[y][chosen], labels=labels, xlabel=self._label(x),
+        return plots.phase_portrait(of_x[chosen], of_y[chosen], labels=labels, xlabel=self._label(x),
                                     ylabel=self._label(y), points=points, axes=axes, **style)
 
     def statuses(self, *, axes: Axes | None = None, **style: Any) -> Any:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
-from ..base.errors import Error, renamed
+from ..base.errors import Error, UnknownName, renamed
 from ..base.statuses import status_names
 from ..models.sensitivities import name_of_derivative
 from ..symbolic.derivatives import derivatives
@@ -45,7 +45,7 @@ class Sensitivities(Mapping[Any, Any]):
             of, wrt = key
             k = name_of_derivative(components, wrt)
             if k not in self.free:
-                raise KeyError(f"there are no sensitivities by {k!r}: they are by {', '.join(self.free)}")
+                raise UnknownName(f"there are no sensitivities by {k!r}: they are by {', '.join(self.free)}")
             return self._by(of, k)
         return np.stack([self._by(key, k) for k in self.free], axis=-1)
 
@@ -63,7 +63,7 @@ class Sensitivities(Mapping[Any, Any]):
             return self._of_output(expression, k, _places[ending])
         derivative = f"{name}_by_{k}"
         if derivative not in components.place or components.place[derivative][0] not in ("state", "accessory"):
-            raise KeyError(f"there are no sensitivities of {name!r}: states, real accessories and outputs have them")
+            raise UnknownName(f"there are no sensitivities of {name!r}: states, real accessories and outputs have them")
         values = run._values_of(derivative) if ending is None else run[run._called[derivative] + ending]
         return values if values.ndim == 2 else self._defined(values)
 
@@ -93,8 +93,8 @@ class Sensitivities(Mapping[Any, Any]):
         for number, partial in found[0].items():
             symbol = symbols[number]
             kind, name = symbol.value
-            if kind == "state":
-                inner: Any = run._output_at(place, symbol_of("state", f"{name}_by_{k}"))
+            if kind in ("state", "accessory"):
+                inner: Any = run._output_at(place, symbol_of(kind, f"{name}_by_{k}"))
             elif symbol is time:
                 at_end = run.records if place == "phase" else run.accessories
                 inner = 0.0 if place == "sample" else at_end[f"time_by_{k}"]

@@ -4,19 +4,19 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Collection, Container, Mapping, Sequence, Sized
+from collections.abc import Callable, Collection, Container, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
 from ..base import component_kinds as kinds
 from ..base.errors import Error
-from ..models.components import Components, by_component, short_name, unknown
+from ..models.components import Components, by_component, short_name
 from ..models.sensitivities import ends_of_domain
 from ..sweeps.gpu_inputs import DeviceInput
 from ..sweeps.inputs import Along, by_name, numbers, whole, whole_numbers
 from ..sweeps.sweep import Sweep, refuse_others
-from ..symbolic.axes import Axis, drawn
+from ..symbolic.axes import Axis, Random, drawn
 from ..symbolic.node import Node
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ def given_values(components: Components, sweep: Sweep | ByComponent | None,
         if components.place.get(name, ("",))[0] not in some_kinds:
             known = [n for n, (kind, _) in components.place.items()
                      if n not in {*components.tables, *components.hidden} and kind in some_kinds]
-            raise unknown(name, known, f"component of the model that {source} can set")
+            raise components.unknown(name, known, f"component of the model that {source} can set")
         return name
 
     return _named(sweep, start, functools.partial(settable, "the sweep", kinds.valued),
@@ -64,7 +64,8 @@ def full_name(components: Components, key: Component) -> str:
         return f"{components.place[name][0]}.{name}"
     if name in ends_of_domain.values():
         return name
-    raise unknown(name, [n for n in components.place if n not in components.tables], "component of the model")
+    known = [n for n in components.place if n not in components.tables]
+    raise components.unknown(name, known, "component of the model")
 
 
 def ends_of(time: tuple[Values, Values] | None) -> tuple[Values, Values]:
@@ -97,10 +98,15 @@ def _refuse_lengths(lengths: Mapping[str, int]) -> None:
                     "my.grid(...) combines all values with all")
 
 
-def refuse_shared(name: str, values: Sized) -> NoReturn:
-    """Refuses several values of a component that all instances share."""
-    raise Error(f"'{name}' is shared by all instances and has {len(values)} values: give one number, or make it a "
-                "parameter")
+def refuse_shared(kind: str, name: str, values: Any) -> NoReturn:
+    """Refuses values of a component that all instances share, where they differ between instances."""
+    if isinstance(values, Along):
+        values = values.given
+    what = "is random" if isinstance(values, Random) else f"has {len(values)} values"
+    cure = ("and make a call for each" if kinds.every[kind].integer else
+            f"or make it a parameter where the model is made, as by my.parameter(\"{name}\") instead of "
+            f"my.shared(\"{name}\")")
+    raise Error(f"'{name}' is shared by all instances and {what}: give one number, {cure}")
 
 
 def gather(components: Components, values: Mapping[str, Any], sweep: Sweep | ByComponent | None,
@@ -170,7 +176,7 @@ def fill(ensemble: Any, components: Components, given: Mapping[str, Any], domain
             ensemble.spread(kind, number, np.ascontiguousarray(np.atleast_1d(values), dtype=real), repeat)
         elif kind in kinds.shared:
             if array.ndim == 1:
-                refuse_shared(name, array)
+                refuse_shared(kind, name, array)
             ensemble.array(kind)[number] = whole_numbers(array, name) if kinds.every[kind].integer else array
         else:
             array = np.asarray(array)

@@ -152,7 +152,7 @@ class StudyResult(Mapping):
     def __contains__(self, key: object) -> bool:
         try:
             return self._find(key) in self.names
-        except (KeyError, Error):
+        except Error:
             return False
 
     def _ipython_key_completions_(self) -> list[str]:

@@ -160,6 +160,8 @@ class Study:
                                  if name.startswith("shared_integer.")}
         for name, value in constants.items():
             if isinstance(value, Random):
+                if (kind := name.partition(".")[0]) in shared_kinds:
+                    refuse_shared(kind, short_name(name), value)
                 made.axis(name, value.core())
             else:
                 made.set(name, float(value))
@@ -171,8 +173,8 @@ class Study:
             if len(values) == 0:
                 raise Error(f"'{short_name(name)}' has no values: a study has one instance or more; my.solve takes a "
                             "sweep of none")
-            if name.partition(".")[0] in shared_kinds:
-                refuse_shared(short_name(name), values)
+            if (kind := name.partition(".")[0]) in shared_kinds:
+                refuse_shared(kind, short_name(name), values)
         pairs = [(name, values.core() if isinstance(values, Axis) else
                   _core.values(np.asarray(values, float).tolist())) for name, values in axis.items()]
         if len(pairs) == 1:

@@ -80,6 +80,11 @@ TEST_CASE("euler_maruyama has strong order one half for Ito equations") {
     CHECK(found.growth == Approx(0.5).margin(0.05));
     CHECK(found.wide == Approx(0.5).margin(0.05));
 }
+TEST_CASE("linearly_implicit_euler_maruyama has strong order one half for Ito equations") {
+    const orders found = strong_orders<myriad::linearly_implicit_euler_maruyama>(true);
+    CHECK(found.growth == Approx(0.5).margin(0.05));
+    CHECK(found.wide == Approx(0.5).margin(0.05));
+}
 TEST_CASE("milstein has strong order one for Ito equations") {
     const orders found = strong_orders<myriad::milstein>(true);
     CHECK(found.growth == Approx(1).margin(0.05));
@@ -107,31 +112,47 @@ TEST_CASE("the Ito equation is solved in reversed time too: a martingale's mean 
     CHECK(mean(myriad::sriw1()) == expected);
 }
 
-TEST_CASE("sra1 has strong order three halves for additive noise, and two if the drift is linear") {
+/// The states at the end of the same paths for additive noise.
+template <class Method>
+myriad::ensemble<noisy::additive> with_additive_noise(std::int64_t paths, std::int64_t seed, double step) {
+    using noisy::additive;
+    myriad::ensemble<additive> e(paths);
+    e.state(additive::x) = 0;
+    e.state(additive::wave) = 0.1;
+    e.time_domain(0, end);
+    myriad::solve<Method>(tests::test_device(2), e, {.step = step, .seed = seed, .noise_step = finest});
+    return e;
+}
+/// The orders with which paths converge for additive noise, of the equation with a linear drift (growth) and of the
+/// other (wide).
+template <class Method>
+orders strong_orders_with_additive_noise() {
     using noisy::additive;
     constexpr std::int64_t paths = 2000, seed = 3;
-    const auto at_end = [](double step) {
-        myriad::ensemble<additive> e(paths);
-        e.state(additive::x) = 0;
-        e.state(additive::wave) = 0.1;
-        e.time_domain(0, end);
-        myriad::solve<myriad::sra1>(tests::test_device(2), e, {.step = step, .seed = seed, .noise_step = finest});
-        return e;
-    };
     const auto w = wiener(paths, seed);
     const Eigen::ArrayXd exact =
         (additive::b * end + additive::a * additive::b * w.state(solvable::growth)) / std::sqrt(1 + end);
-    // Steps of a 16th of a cell, whose errors are 64 times less than those of the finest steps that are compared.
-    const auto of_reference = at_end(finest / 16);
+    // By sra1 with steps of a 16th of a cell, whose errors are 64 times less than those of the finest of its steps that
+    // are compared.
+    const auto of_reference = with_additive_noise<myriad::sra1>(paths, seed, finest / 16);
     const Eigen::ArrayXd reference = of_reference.state(additive::wave);
     std::array<double, halvings> linear{}, curved{};
     for (int k = 0; k < halvings; ++k) {
-        const auto e = at_end(coarsest / (1 << k));
+        const auto e = with_additive_noise<Method>(paths, seed, coarsest / (1 << k));
         linear[static_cast<std::size_t>(k)] = -std::log2((e.state(additive::x) - exact).abs().mean());
         curved[static_cast<std::size_t>(k)] = -std::log2((e.state(additive::wave) - reference).abs().mean());
     }
-    CHECK(slope(linear) == Approx(2).margin(0.05));
-    CHECK(slope(curved) == Approx(1.5).margin(0.05));
+    return {slope(linear), slope(curved)};
+}
+TEST_CASE("sra1 has strong order three halves for additive noise, and two if the drift is linear") {
+    const orders found = strong_orders_with_additive_noise<myriad::sra1>();
+    CHECK(found.growth == Approx(2).margin(0.05));
+    CHECK(found.wide == Approx(1.5).margin(0.05));
+}
+TEST_CASE("linearly_implicit_euler_maruyama has strong order one for additive noise") {
+    const orders found = strong_orders_with_additive_noise<myriad::linearly_implicit_euler_maruyama>();
+    CHECK(found.growth == Approx(1).margin(0.05));
+    CHECK(found.wide == Approx(1).margin(0.05));
 }
 
 TEST_CASE("sriw1 has strong order three halves for Ito equations with diagonal noise") {
@@ -185,6 +206,25 @@ TEST_CASE("euler_maruyama has weak order one where the noise does not commute") 
     CHECK(2 * moment[3] - moment[2] == Approx(std::exp(-3.0)).epsilon(4 * 1.1 / std::sqrt(paths) + 0.004));
 }
 
+TEST_CASE("means by dri1 are those of the equation, and its paths are the same alone and among others") {
+    constexpr std::int64_t paths = 100'000;
+    const auto at_end = [](std::int64_t count) {
+        myriad::ensemble<sharing> e(count);
+        e.state(sharing::x) = 1;
+        e.state(sharing::z) = 1;
+        e.time_domain(0, 3);
+        myriad::solve<myriad::dri1>(tests::test_device(2), e, {.step = 3.0 / 16, .seed = 11});
+        return e;
+    };
+    const auto all = at_end(paths), alone = at_end(1);
+    CHECK(all.state(sharing::x)[0] == alone.state(sharing::x)[0]);
+    CHECK(all.state(sharing::z)[0] == alone.state(sharing::z)[0]);
+    // Within four standard errors, and of x^2 what dri1_test's sums over all outcomes give for such steps.
+    const auto& x = all.state(sharing::x);
+    CHECK(x.square().mean() == Approx(std::exp(-3.0)).epsilon(4 * 1.1 / std::sqrt(paths) + 0.0015));
+    CHECK(x.mean() == Approx(std::exp(-3 * 273.0 / 512)).margin(4 * std::sqrt(std::exp(-3.0) / paths)));
+}
+
 TEST_CASE("means and variances of an Ornstein-Uhlenbeck process are those of the method") {
     constexpr std::int64_t paths = 100'000;
     constexpr double h = 1.0 / 32, left = 1 - h * solvable::damping;
@@ -203,4 +243,18 @@ TEST_CASE("means and variances of an Ornstein-Uhlenbeck process are those of the
     CHECK(variance ==
           Approx(solvable::force * solvable::force / (2 * solvable::damping) * (1 - std::exp(-2 * solvable::damping)))
               .epsilon(0.03));
+}
+
+TEST_CASE("a stiff Ornstein-Uhlenbeck process has the stationary variance of linearly_implicit_euler_maruyama") {
+    // x1 = (x + s dW) / (1 + h c) with h c = 100, whose variance is s^2 h / ((1 + h c)^2 - 1) after a few steps.
+    constexpr std::int64_t paths = 100'000;
+    constexpr double h = 100 / solvable::damping, factor = 1 + h * solvable::damping;
+    auto e = start(paths, true);
+    e.time_domain(0, 4 * h);
+    myriad::solve<myriad::linearly_implicit_euler_maruyama>(tests::test_device(2), e, {.step = h, .seed = 5});
+    const double variance = h * solvable::force * solvable::force / (factor * factor - 1);
+    const auto& x = e.state(solvable::decay);
+    const double found = x.mean(), spread = (x - found).square().sum() / (paths - 1);
+    CHECK(found == Approx(0).margin(4 * std::sqrt(variance / paths)));
+    CHECK(spread == Approx(variance).epsilon(4 * std::sqrt(2.0 / paths)));
 }

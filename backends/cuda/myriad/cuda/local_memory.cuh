@@ -15,7 +15,7 @@ inline constexpr std::size_t most_local_memory = 512 << 10;
 template <class Model, class Method, class R>
 constexpr std::size_t find_bytes_of_step() {
     constexpr std::size_t stages = sizeof(trial_step<Method, R, n_state<Model>>);
-    if constexpr (rosenbrock_method<Method>) {
+    if constexpr (solves_linear_systems<Method>) {
         return stages + sizeof(stage_factors<Model, R>);
     } else {
         return stages;

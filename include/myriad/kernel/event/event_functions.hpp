@@ -41,13 +41,14 @@ MYRIAD_FUNCTION R rounding_weight(int c) {
 /// How far rounding may put the event functions at (t, y) from their values, as far as that shows: nothing can be told
 /// from values closer to zero. A few roundings of t and of states of the given sizes, times the derivatives. One
 /// derivative does for all of them, with weights, so that x - y has a rounding error though its two terms cancel.
-/// States too small for normal numbers have the rounding error of the smallest. Zero where the functions have no finite
-/// derivative, or are constant but for jumps.
+/// Denormal states have one of some two thousand of the least of those, as each stage of a step rounds: what decays
+/// until it is zero has not crossed it. Zero where the functions have no finite derivative, or are constant but for
+/// jumps.
 template <class Model, class R>
 MYRIAD_FUNCTION vec<R, n_event<Model>> compute_roundings(const R& t, const vec<R, n_state<Model>>& y,
                                                          const vec<R, n_state<Model>>& size,
                                                          const inputs<Model, R>& p) {
-    constexpr R least = smallest_normal_of<R> / epsilon_of<R>;
+    constexpr R least = R(256) * smallest_normal_of<R>;
     vec<dual<R>, n_state<Model>> y_dual;
     if constexpr (n_state < Model >> largest_traced_system) {
         for (int c = 0; c < MYRIAD_LENGTH(n_state<Model>); ++c)

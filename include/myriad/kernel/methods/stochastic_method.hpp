@@ -13,6 +13,7 @@ namespace myriad::detail {
 ///                                  the state at t1, which is t + h up to rounding; `slope` is the drift at (t, y)
 ///
 ///     uses_integrals               if it takes integrals of the path over a step, beside its increments
+///     uses_jacobian                if it solves linear systems with the Jacobian of the drift
 ///
 /// beside `stages`, the evaluations of the drift, embedded_order (0: fixed steps) and first_same_as_last (false).
 template <class Method>
@@ -30,6 +31,12 @@ namespace myriad::detail {
 template <class Method>
 inline constexpr bool uses_integrals = requires {
     requires Method::uses_integrals;
+};
+
+/// Whether a method solves linear systems with the Jacobian.
+template <class Method>
+inline constexpr bool uses_jacobian = requires {
+    requires Method::uses_jacobian;
 };
 
 }  // namespace myriad::detail

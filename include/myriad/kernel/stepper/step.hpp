@@ -39,8 +39,9 @@ MYRIAD_FUNCTION void take_trial_step(const S& t, const S& h, const S& t1, const 
     }
 }
 
-/// Whether a method solves linear systems, which may be singular; its trial steps then mark the lanes.
+/// Whether a method solves linear systems, which may be singular; its trial steps then mark the lanes, or, if it takes
+/// fixed steps, have no number there.
 template <class Method>
-inline constexpr bool solves_linear_systems = rosenbrock_method<Method>;
+inline constexpr bool solves_linear_systems = rosenbrock_method<Method> || uses_jacobian<Method>;
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET

@@ -15,7 +15,8 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 /// The trial. A `trial_step<Method, S, n>`, in which the loop sets `slope_start()`, the right-hand side at (t, y), and
 /// `take_trial_step<Method, Model>` all else: the new state `y`; if the method is `first_same_as_last`, `slope_end()`,
 /// the right-hand side at (t1, y); and if it solves linear systems, the lanes that are `singular`, where the rest is
-/// invalid. `Method::stages` are the evaluations of the right-hand side, that at the start included.
+/// invalid, or with fixed steps is not a number. `Method::stages` are the evaluations of the right-hand side, that at
+/// the start included.
 ///
 /// The error, of methods with an `embedded_order`. The estimate of component c is `error_factor<Method>(h) *
 /// error_sum<Method>(trial, c)`; it decreases with h to the power `estimate_order<Method> + 1`.
@@ -41,7 +42,7 @@ concept stepper = requires(const S& t, const vec<S, n_state<Model>>& y, const in
     requires !Method::first_same_as_last || requires {
         { taken.slope_end() } -> std::same_as<const vec<S, n_state<Model>>&>;
     };
-    requires !solves_linear_systems<Method> || requires {
+    requires !solves_linear_systems<Method> || Method::embedded_order <= 0 || requires {
         { taken.singular } -> std::same_as<const mask_of<S>&>;
     };
     requires Method::embedded_order <= 0 || requires {

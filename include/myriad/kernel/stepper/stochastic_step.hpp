@@ -10,7 +10,9 @@
 #include "myriad/kernel/model/path_integral.hpp"
 #include "myriad/kernel/model/wiener_path.hpp"
 #include "myriad/kernel/scalar/dual.hpp"
+#include "myriad/kernel/scalar/select.hpp"
 #include "myriad/kernel/stepper/explicit_rk.hpp"
+#include "myriad/kernel/stepper/rosenbrock.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
@@ -23,6 +25,14 @@ struct trial_step<Method, S, n> {
 
     MYRIAD_FUNCTION vec<S, n>& slope_start() { return slope; }
     MYRIAD_FUNCTION const vec<S, n>& slope_start() const { return slope; }
+};
+
+/// What I / h - J is by the terms of a Rosenbrock method.
+struct whole_step {
+    struct coefficients {
+        double gamma = 1;
+    };
+    static constexpr coefficients tableau() { return {}; }
 };
 
 /// What a method asks of an equation dy = f(t, y) dt + g(t, y) dW over one step, in which the increments dW are known.
@@ -64,6 +74,23 @@ struct noisy_equation {
         }
         return sum;
     }
+    /// g, a vector for each process: zero but for its own state if the noise is diagonal.
+    MYRIAD_FUNCTION vec<vec<S, n>, m> columns(const S& t, const vec<S, n>& y) const {
+        const auto g = Model::template diffusion<S>(t, y, p);
+        vec<vec<S, n>, m> all;
+        MYRIAD_UNROLL_UP_TO(64, 16)
+        for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
+            MYRIAD_UNROLL_UP_TO(64, 16)
+            for (int c = 0; c < MYRIAD_LENGTH(n); ++c) {
+                if constexpr (has_general_noise<Model>) {
+                    all[j][c] = g[c][j];
+                } else {
+                    all[j][c] = c == j ? g[c] : S(real_of<S>(0));
+                }
+            }
+        }
+        return all;
+    }
     /// g dW + g g' (dW^2 - |h|) / 2 of diagonal noise, where g' is the derivative of a state's factor by that state:
     /// one evaluation with dual numbers gives all, as a factor depends on no other state.
     MYRIAD_FUNCTION vec<S, n> noise_with_correction(const S& t, const S& h, const vec<S, n>& y) const {
@@ -83,6 +110,24 @@ struct noisy_equation {
             }
             return sum;
         }
+    }
+    /// The change x over a step of the equation that is linear in it, x = h (f + h df/dt + J x) + `noise`: f, which is
+    /// `slope`, its derivative by time and the Jacobian J are those at (t, y). Not a number where I - h J is singular.
+    MYRIAD_FUNCTION vec<S, n> implicit_change(const S& t, const S& h, const vec<S, n>& y, const vec<S, n>& slope,
+                                              const vec<S, n>& noise) const {
+        using loop = component_loop<Model, S>;
+        const S per_h = detail::reciprocal_of_step(h);
+        stage_factors<Model, S> lu;
+        const auto regular = detail::factorise_stage_matrix<whole_step, Model>(t, per_h, y, p, lu);
+        vec<S, n> change;
+        loop::all([&](auto c) MYRIAD_LAMBDA { change[c] = fma(per_h, noise[c], slope[c]); });
+        if constexpr (depends_on_time<Model>) {
+            const vec<S, n> by_time = detail::time_derivative<Model>(t, y, p);
+            loop::all([&](auto c) MYRIAD_LAMBDA { change[c] = fma(h, by_time[c], change[c]); });
+        }
+        solve_factorised(lu, change);
+        loop::all([&](auto c) MYRIAD_LAMBDA { change[c] = select(regular, change[c], S(nan_of<real_of<S>>)); });
+        return change;
     }
 };
 
