@@ -33,16 +33,16 @@ def _name_of(state: Any) -> str:
 
 class TabledDoses:
     """What one state gets by a table. Its rows are time, amount, and rate of infusions from then on; those of one
-    subject follow each other, and end with a row at an infinite time."""
+    subject follow each other, and end with a row of zeros that is none."""
 
     def __init__(self, into: Any, of_subjects: list[Array], lag: Any, bioavailability: Any) -> None:
         self.into, self.lag, self.bioavailability, self.line = into, lag, bioavailability, users_line()
         name = _name_of(into)
         ends = np.cumsum([len(rows) for rows in of_subjects])
-        rows = np.full((1 << int(ends[-1] - 1).bit_length(), 3), [np.inf, 0, 0])  # so that others of this length compile
-        rows[:ends[-1]] = np.concatenate(of_subjects)                             # nothing
+        rows = np.zeros((1 << int(ends[-1] - 1).bit_length(), 3))  # as generated code has the length, but not the rows
+        rows[:ends[-1]] = np.concatenate(of_subjects)
         self.table = Table(sym.check_name(f"{name}_doses", "a table"), rows)
-        self.first, self.last = (sym.parameter(f"{name}_doses_{what}") for what in ("first", "last"))
+        self.first, self.last = (sym.parameter(f"{what}_{name}_dose") for what in ("first", "last"))
         self.sweep = {self.first: np.concatenate([[0.0], ends[:-1]]), self.last: ends - 1.0}
         self.rate, self.until = (sym.accessory(f"{name}_{what}") for what in ("infused", "infused_until"))
         self.is_infusion = bool((rows[:, 2] > 0).any())
@@ -62,10 +62,11 @@ class TabledDoses:
         """The stop at which the state gets what is given at once, and the rate of infusions changes."""
         row = minimum(self.first + sym.stop_number, self.last)
         time, amount, rate = (make("lookup", (row,), (self.table, column, 3, len(self.table))) for column in range(3))
+        time = where(self.first + sym.stop_number < self.last, add(time, self.lag), np.inf)
         do = {target: target + multiply(self.bioavailability, amount)}
         if self.is_infusion:
             do[self.rate] = rate
-        made = Stop([add(time, self.lag)], None, None, free_name(f"{target.value[1]}_dose"), do)
+        made = Stop([time], None, None, free_name(f"{target.value[1]}_dose"), do)
         made.by_number, made.line = True, self.line
         return [made]
 
@@ -244,7 +245,7 @@ def _rows(several: list[tuple[float, float, float, float]]) -> Array:
     happening = sorted([(begin, amount) for begin, _, amount, _ in several]
                        + [(end, 0.0) for _, end, _, rate in several if rate > 0], key=lambda one: one[0])
     return np.array([*((time, amount, sum(rate for begin, end, _, rate in several if begin <= time < end))
-                       for time, amount in happening), (np.inf, 0.0, 0.0)])
+                       for time, amount in happening), (0.0, 0.0, 0.0)])
 
 
 def _constant(name: str, given: list[Any], ids: list[Any], order: list[Any], line: tuple[str, int] | None) -> Array:
