@@ -140,3 +140,92 @@ def test_doses_at_the_ends_of_the_time_domain_count():
 def test_what_does_not_fit_is_refused(wrong, message):
     with pytest.raises(my.Error, match=message):
         wrong()
+
+
+# Tables
+
+subjects = dict(ID=[1, 1, 1, 2, 2, 3, 3], TIME=[0, 4, 12, 0, 10, 1, 2], AMT=[100, 0, 50, 80, ".", 20, 30],
+                ADDL=[0, 0, 2, 0, 0, 0, 0], II=[0, 0, 6, 0, 0, 0, 0], CMT=[1, 1, 1, 1, 2, 1, 2],
+                RATE=[0, 0, 0, 0, 0, 0, 10], DV=[".", 3.0, ".", ".", 5.0, ".", "."], WT=[70, 70, 70, 80, 80, 60, 60])
+of_subjects = [swallowed([0, 12, 18, 24], [100, 50, 50, 50]), swallowed([0], [80]),
+               swallowed([1], [20]) + infused(np.array([2.0]), np.array([5.0]), 10)]
+
+
+@pytest.mark.parametrize("interpreted", [True, False])
+def test_a_table_gives_each_subject_its_doses(interpreted):
+    records = my.dose_table(subjects, {1: gut, 2: blood})
+    run = solved(drug.with_doses(records), records.sweep, interpreted=interpreted)
+    np.testing.assert_allclose(run[blood], of_subjects, rtol=1e-8)
+
+
+def test_a_table_tells_covariates_observations_and_times():
+    records = my.dose_table(subjects, {1: gut, 2: blood})
+    assert records.ids == [1, 2, 3] and [list(end) for end in records.time] == [[0, 0, 1], [12, 10, 2]]
+    np.testing.assert_array_equal(records.covariates["wt"], [70, 80, 60])
+    np.testing.assert_array_equal(records.observed_times, [[4], [10], [np.nan]])
+    np.testing.assert_array_equal(records.observed, [[3], [5], [np.nan]])
+
+
+def test_a_table_comes_from_a_file_or_a_data_frame(tmp_path):
+    pandas = pytest.importorskip("pandas")
+    path = tmp_path / "subjects.csv"
+    pandas.DataFrame(subjects).to_csv(path, index=False)
+    of_file = my.dose_table(path, {"1": gut, "2": blood})
+    of_frame = my.dose_table(pandas.DataFrame(subjects), {1: gut, 2: blood})
+    assert of_file.ids == ["1", "2", "3"] and of_frame.ids == [1, 2, 3]
+    for one in (of_file, of_frame):
+        np.testing.assert_allclose(solved(drug.with_doses(one), one.sweep)[blood], of_subjects, rtol=1e-8)
+
+
+def test_doses_of_a_table_may_come_later_and_in_part():
+    records = my.dose_table(dict(time=[0, 3], amt=[10, 20]), gut, lag=lag, bioavailability=part)
+    run = solved(drug.with_doses(records), {**records.sweep, lag: 0.5, part: 0.25})
+    np.testing.assert_allclose(run[blood], swallowed([0.5, 3.5], [2.5, 5]), rtol=1e-8)
+
+
+def test_infusions_of_a_table_may_overlap_and_go_on_over_phases():
+    records = my.dose_table(dict(time=[0, 5, 6, 20], amt=[70, 70, 7, 30], dur=[7, 7, 0, 3]), blood)
+    expected = infused(np.array([0, 5]), np.array([7, 12]), 10) + infused(np.array([20]), np.array([23]), 10)
+    expected += 7 * np.exp(-0.2 * 24)
+    for phases in (dict(), dict(phases=6, phase_length=5)):
+        run = solved(drug.with_doses(records), records.sweep, **phases)
+        np.testing.assert_allclose(run[blood], expected, rtol=1e-8)
+
+
+def test_tables_with_other_rows_need_no_other_kernel():
+    first, second = (my.dose_table(dict(id=[1, 1, 2], time=[0, k, 3], amt=[k, 20, 5]), gut) for k in (1, 2))
+    assert drug.with_doses(first).cpp() == drug.with_doses(second).cpp()
+
+
+def test_a_subject_may_have_no_dose():
+    records = my.dose_table(dict(id=["b", "a"], time=[0, 0], amt=[0, 8], dv=[1, "."]), gut)
+    np.testing.assert_allclose(solved(drug.with_doses(records), records.sweep)[blood], [0, swallowed([0], [8])],
+                               rtol=1e-8)
+
+
+@pytest.mark.parametrize("columns, message", [
+    (dict(amt=[1]), "no column 'time'"),
+    (dict(time=[0, 2, 1], amt=[1, 1, 1]), r"row 3 .* has the time 1.0 after 2.0: sort the rows"),
+    (dict(time=[0], amt=["much"]), "row 1 .* has 'much' in the column 'amt'"),
+    (dict(time=[0], amt=[1], ss=[1], ii=[12]), "a steady state: give the doses before it"),
+    (dict(time=[0], amt=[1], evid=[4]), "a reset: give what follows another id"),
+    (dict(time=[0], amt=[1], evid=[7]), "evid 7: 0, 1 and 2 are known"),
+    (dict(time=[0], amt=[0], evid=[1]), "a dose of 0: give an amount above zero"),
+    (dict(time=[0], amt=[1], rate=[-2]), "below zero"),
+    (dict(time=[0], amt=[1], rate=[2], dur=[2]), "both rate and dur"),
+    (dict(time=[0], amt=[1], addl=[3]), "give the interval of further doses in ii"),
+    (dict(time=[0, 1], amt=[1, 1], age=[50, 51]), "'age' .* changes within the subject .*, from 50 to 51"),
+])
+def test_rows_that_cannot_be_read_are_refused_by_their_number(columns, message):
+    with pytest.raises(my.Error, match=message):
+        my.dose_table(columns, gut)
+
+
+def test_a_dose_into_an_unknown_compartment_is_refused():
+    with pytest.raises(my.Error, match="row 2 .* has cmt 3: `into` has 1, 2"):
+        my.dose_table(dict(time=[0, 1], amt=[1, 1], cmt=[1, 3]), {1: gut, 2: blood})
+
+
+def test_a_table_with_infusions_has_no_bioavailability():
+    with pytest.raises(my.Error, match="has the bioavailability"):
+        my.dose_table(dict(time=[0], amt=[1], dur=[1]), gut, bioavailability=part)
