@@ -24,6 +24,8 @@ from .inference.fitting import *  # noqa: F403
 from .inference.least_squares import *  # noqa: F403
 from .kernels import cache as cache
 from .models.cpp_model import CppModel as CppModel
+from .models.dose_table import *  # noqa: F403
+from .models.doses import *  # noqa: F403
 from .models.event import *  # noqa: F403
 from .models.methods import controls as controls, methods as methods
 from .models.sensitivities import *  # noqa: F403
@@ -58,7 +60,7 @@ _public = ["CppModel", "Damage", "Error", "EventChoice", "Interrupted", "Options
            "solve", "status_names", "study", "verify",
            *(name for part in ("codegen.model", "dynamics.attractors", "dynamics.continuation", "dynamics.hysteresis",
                                "dynamics.steady_states", "gradients.batched", "inference.fitting",
-                               "inference.least_squares", "models.event", "models.sensitivities", "models.tangents",
+                               "inference.least_squares", "models.dose_table", "models.doses", "models.event", "models.sensitivities", "models.tangents",
                                "models.trigger", "models.units", "results.exponents", "results.sensitivities",
                                "sweeps.sweep", "symbolic.axes", "symbolic.expression", "symbolic.functions",
                                "symbolic.interpolate", "symbolic.symbols", "symbolic.table")

@@ -114,9 +114,12 @@ struct triggered_tape_model : tape_model<true> {
         read(current_tape->stop_time[stop], R(number), &time, p, time);
         return time;
     }
-    [[gnu::noinline]] static myriad::action after_stop(int stop, int, auto& lane) {
-        if (stop != current_tape->due) return hook(current_tape->after_stop[stop], lane);
+    [[gnu::noinline]] static myriad::action after_stop(int stop, int number, auto& lane) {
         tape_action waiting;
+        if (stop != current_tape->due) {
+            waiting.value[0] = number;
+            return hook(current_tape->after_stop[stop], lane, &waiting);
+        }
         const auto priority = [&](int action) {
             tape_action one;
             hook(current_tape->priority[action], lane, &one);

@@ -130,8 +130,8 @@ class Writer:
 
     def in_function(self, node: Node) -> str:
         names, (kind, name) = self.names, node.value
-        if kind == "built-in":  # the time
-            return names.t
+        if kind == "built-in":
+            return names.t if name == "time" else f"{names.R}({names.number})"
         prefix = {"state": names.y, "parameter": names.p}.get(kind, f"{names.p}.{kind}")
         return f"{prefix}[{name}]"
 
@@ -179,6 +179,8 @@ class Writer:
             if one.every is not None:
                 first, every, count = (f"{n.R}({body.text(value)})" for value in one.values)
                 value = f"myriad::recurring({n.number}, {first}, {every}, {count})"
+            elif one.by_number:
+                value = f"{n.R}({body.text(one.times[0])})"
             else:
                 value = f"{n.R}(myriad::infinity_of<myriad::real_of<{n.R}>>)"
                 for number, time in reversed(list(enumerate(one.times))):
@@ -200,7 +202,7 @@ class Writer:
     def in_hook(self, node: Node) -> str:
         lane, (kind, name) = self.names.lane, node.value
         if kind == "built-in":
-            return f"{lane}.{_headers[name]}"
+            return f"{self.names.R}({self.names.number})" if name == "stop_number" else f"{lane}.{_headers[name]}"
         if kind == "waiting":
             return f"{self.names.taken_action}.value[{name}]"
         member = {"state": "y"}.get(kind, kind)
@@ -285,7 +287,14 @@ class Writer:
             blocks.append(self.stop_time())
         at_events = self.acting(model.events)
         return [*([self.action("event", at_events, len(model.events))] if at_events else []), *blocks,
-                *([self.action("stop", at_stops, len(model.stop_names), ", int")] if at_stops else [])]
+                *([self.action("stop", at_stops, len(model.stop_names), f", {self.number_of(at_stops)}")]
+                  if at_stops else [])]
+
+    def number_of(self, acting: Sequence[tuple[str, list[str]]]) -> str:
+        """The argument for the number of a stop's time, which only actions from a table read."""
+        number = self.names.number
+        reads = any(re.search(rf"\b{number}\b", line) for _, lines in acting for line in lines)
+        return f"int {number}" if reads else "int"
 
     def done(self, assignments: Assignments) -> list[str]:
         """The statements of an action."""

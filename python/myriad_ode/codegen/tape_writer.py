@@ -70,7 +70,9 @@ class Writer:
 
     def _symbol(self, node: Node, to: int) -> None:
         kind, name = node.value
-        if kind == "built-in":
+        if node is sym.stop_number:  # of an action, for which it is kept as a value that waits is
+            self._emit("load_waiting", to, 0)
+        elif kind == "built-in":
             self._emit(f"load_{name}", to)
         elif kind == "event_count":
             self._emit("load_event_count", to, self.events.index(name))

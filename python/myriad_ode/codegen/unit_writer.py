@@ -315,7 +315,8 @@ class UnitForm(Writer):
                       for stop, (system, own) in zip(model.stops, self.at_stops) if system or own]
             lines = branches("stop", acting, len(model.stops))
             which = "int stop" if len(model.stops) > 1 else "int"
-            yield self._hook("after_stop", f"[[maybe_unused]] int unit, {which}, int, {lane}", lines)
+            number = self.number_of([("", lines)])
+            yield self._hook("after_stop", f"[[maybe_unused]] int unit, {which}, {number}, {lane}", lines)
         if model.generate:
             writer = copy.copy(self)
             writer.names, writer._in_generate = self.names.in_generate(), True

@@ -18,6 +18,7 @@ from ..models.recorded import RecordedModel
 from ..symbolic import symbols as sym
 from ..symbolic.expression import constant
 from ..symbolic.functions import fma, where
+from ..symbolic.rewrite import replaced
 from .compiler import Kernel
 
 if TYPE_CHECKING:
@@ -91,6 +92,8 @@ def _time_of(one: Stop) -> Node:
     if one.every is not None:
         first, every, count = one.values
         return where(number < count, fma(number, every, first), math.inf)
+    if one.by_number:
+        return replaced(one.times, {sym.stop_number: number})[0]
     time: Any = constant(math.inf)
     for i, given in reversed(list(enumerate(one.times))):
         time = where(number == i, given, time)

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..base import component_kinds as kinds
+from ..base.errors import Error, at, users_line
 
 if TYPE_CHECKING:
     import numpy as np
@@ -80,6 +81,11 @@ class AnyModel(ComponentNames):
     def stop_names(self) -> Sequence[str]:
         """The names of the kinds of stop times."""
         return ()
+
+    def with_doses(self, *several: Any) -> AnyModel:
+        """The model whose states get these doses; here a refusal, of a model that is not recorded."""
+        raise Error(f"the model {self.name} is no recorded one, to which doses can be added{at(users_line())}: add them "
+                    "to the model that it is made of, or write them as stops")
 
     def cpp(self) -> str:
         """The model as the text of a C++ header."""

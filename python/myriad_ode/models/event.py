@@ -91,7 +91,10 @@ def event(function: Written, *, name: str | None = None, direction: Direction = 
 
 
 class Stop:
-    """Times at which steps end, one after the other; `do` is what happens there."""
+    """Times at which steps end, one after the other; `do` is what happens there. With `by_number` there is one time, a
+    function of `sym.stop_number`, which is infinite beyond the last, and `do` may read the number too."""
+
+    by_number = False
 
     def __init__(self, times: list[Any], every: Any, count: Any, name: str | None, do: Any) -> None:
         self.times, self.every, self.count, self.name, self.do = times, every, count, name, do

@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from .trigger import Trigger
 
 _built_in = {"time": "t", "step": r"\Delta t", "next_step": r"\Delta t_{\mathrm{next}}", "phase": r"\mathrm{phase}",
-             "instance": r"\mathrm{instance}", "t_begin": r"t_{\mathrm{begin}}", "t_end": r"t_{\mathrm{end}}"}
+             "instance": r"\mathrm{instance}", "t_begin": r"t_{\mathrm{begin}}", "t_end": r"t_{\mathrm{end}}",
+             "stop_number": "n"}
 _directions = {"rising": " (rising)", "falling": " (falling)", "either": "", "none": " (switched off)"}
 _actions = {"end_phase": r"\text{end phase}", "end_instance": r"\text{end instance}"}
 _shown = 40  # lines, in a notebook

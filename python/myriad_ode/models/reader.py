@@ -210,7 +210,7 @@ class Reader:
                 raise Error(f"stops[{i}] is {type(given).__name__}{at(self.line)}: make it by my.stop(time, "
                             "do=...)")
             one = Stop([], None, None, given.name or f"stop_{i + 1}", None)
-            one.line, what = given.line, f"stop {one.name}"
+            one.line, one.by_number, what = given.line, given.by_number, f"stop {one.name}"
 
             def real_of(value: Any, what: str = what) -> Node | None:
                 return None if value is None else to_real(self._real(self.value(value, what), what))
@@ -221,7 +221,7 @@ class Reader:
                 one.count = real_of(float("inf"))
             for symbol in symbols_of(one.values):
                 kind, name = symbol.value
-                if kind == "state" or kind not in kinds.valued:
+                if symbol is not sym.stop_number and (kind == "state" or kind not in kinds.valued):
                     raise Error(f"{name} stands in the time of {what}{at(given.line)}: times are made of parameters, "
                                 "shared values and accessories; make an event where a state decides")
             one.do = self.assignments(given.do, what, line=given.line)

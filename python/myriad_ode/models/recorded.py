@@ -13,11 +13,14 @@ from ..base import component_kinds as kinds
 from ..base.errors import Error, at, users_line
 from ..symbolic import symbols as sym
 from ..symbolic.evaluate import evaluate
+from ..symbolic.folding import add
 from ..symbolic.functions import draws
 from ..symbolic.node import Node, symbols_of, text, walk
 from ..symbolic.table import tables_of
 from ..symbolic.whole_and_real import generic_problem
 from .any_model import AnyModel, names_of
+from .dose_table import DoseTable
+from .doses import Doses
 from .event import Event, Stop, stop
 from .latex import model_html, model_latex
 from .mass_matrix import left_sides, read_mass_matrix
@@ -111,13 +114,14 @@ class RecordedModel(AnyModel):
 
         self._as_given = copy.copy(self)
         self._as_given.name, self._changing = name or "", changing
-        self._as_given.events = [copy.copy(one) for one in self.events]
-        self._as_given.stops = [copy.copy(one) for one in self.stops]
         self._switch(None)
 
     def _switch(self, moves: Callable[[set[Any]], bool] | None) -> None:
         """Makes jumps in time exact. `moves`: the symbols that jumps with stops of their own have times from."""
         given = self._as_given
+        self.events, self.stops, self.triggers = ([copy.copy(one) for one in several]
+                                                  for several in (given.events, given.stops, given.triggers))
+        self.edges = list(edges_of(self.triggers, self.queue))
         taken: list[str] = []
 
         def free(wanted: str) -> str:
@@ -169,6 +173,43 @@ class RecordedModel(AnyModel):
         made._made = {}
         return made
 
+    def with_doses(self: Recorded, *several: Doses | DoseTable) -> Recorded:
+        """The model whose states get these doses, from `my.doses(...)` or `my.dose_table(...)`, besides what the model
+        itself does."""
+        line, made, given, reader = users_line(), self.changeable(), self._as_given, self._reader
+        made.line = line
+        for part in ("rhs", "events", "stops", "triggers", "noise", "observed", "initialise", "hidden"):
+            setattr(made, part, getattr(given, part))
+        made.equations = dict(self.equations)
+        names = list(given.component_names)
+
+        def free_name(wanted: str) -> str:
+            names.append(sym.free_name(wanted, [*names, *self._reserved]))
+            return names[-1]
+
+        wrong = next((one for one in several if not isinstance(one, (Doses, DoseTable))), None)
+        if wrong is not None:
+            raise Error(f"with_doses gets a {type(wrong).__name__}{at(line)}: make it by my.doses(state, amount, at=...)")
+        stops = []
+        for one in [part for table in several for part in table.parts]:
+            target = reader.target(self.aliases.get(one.into, one.into), "doses")
+            if target not in made.equations:
+                raise Error(f"doses go into {target.value[1]}{at(one.line)}, which is no state of the model: choose one "
+                            f"of {', '.join(self.states)}")
+            one = one.read(reader.expression)
+            names += [symbol.value[1] for symbol in symbols_of(one.values)]
+            made.equations[target] = add(made.equations[target], one.inflow())
+            stops += one.stops(target, free_name)
+            at_start, at_end = one.hooks()
+            made.initialise = [*made.initialise, *reader.assignments(at_start, "initialise")]
+            made.finalise = [*made.finalise, *reader.assignments(at_end, "finalise")]
+        made.stops = [*made.stops, *reader.stops(stops)]
+        made.rhs = list(made.equations.values())
+        made._collect(list(made.equations))
+        made._make_jumps_exact(given.name or None, self.mass_matrix is not None)
+        made._check()
+        return made
+
     def with_jumps_apart(self: Recorded, moves: Callable[[set[Any]], bool]) -> Recorded:
         """The model in which jumps at times that depend on certain symbols have stops of their own, so that each
         contributes the derivative of its own time; the model itself if no jump depends on them."""
@@ -176,8 +217,6 @@ class RecordedModel(AnyModel):
             return self
         made = self.changeable()
         made.hidden = self.hidden - {target.value[1] for target in self.switches.at_start}
-        made.events = [copy.copy(one) for one in self._as_given.events]
-        made.stops = [copy.copy(one) for one in self._as_given.stops]
         made._switch(moves)
         return made
 

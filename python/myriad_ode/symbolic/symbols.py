@@ -176,6 +176,7 @@ phase = _built_in("phase", integer)  #: in hooks: the number of the phase, from 
 instance = _built_in("instance", integer)  #: in hooks and `generate`: the number of the instance, from 0
 t_begin = _built_in("t_begin")  #: in hooks: begin of the time domain, which they may assign
 t_end = _built_in("t_end")  #: in hooks: end of the time domain, which they may assign
+stop_number = _built_in("stop_number")  # in the times of a stop, and its action: which of them, from 0
 end_phase = make("symbol", value=("action", "end_phase"), type="condition")  #: assign a condition: true ends the phase
 #: assign a condition: true ends the phase, and no further one begins
 end_instance = make("symbol", value=("action", "end_instance"), type="condition")

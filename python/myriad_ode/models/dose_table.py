@@ -1,0 +1,262 @@
+# SPDX-License-Identifier: MIT
+"""Doses from a table with a row for each, as programs of pharmacometrics have them: other times and amounts for each
+subject. The columns have the names and meanings that they have in NONMEM's data."""
+
+from __future__ import annotations
+
+import csv
+import os
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..base.errors import Error, at, users_line
+from ..symbolic import symbols as sym
+from ..symbolic.expression import make
+from ..symbolic.folding import add, constant, multiply
+from ..symbolic.functions import minimum, where
+from ..symbolic.table import Table
+from .event import Stop
+
+if TYPE_CHECKING:
+    from ..symbolic.types import Array, Component, Path, Written
+
+__all__ = ["dose_table", "DoseTable"]
+
+_columns = ("id", "time", "amt", "evid", "cmt", "rate", "dur", "ii", "addl", "ss", "dv", "mdv")
+
+
+def _name_of(state: Any) -> str:
+    return str(getattr(state, "value", (None, state))[1])
+
+
+class TabledDoses:
+    """What one state gets by a table. Its rows are time, amount, and rate of infusions from then on; those of one
+    subject follow each other, and end with a row of zeros that is none."""
+
+    def __init__(self, into: Any, of_subjects: list[Array], lag: Any, bioavailability: Any) -> None:
+        self.into, self.lag, self.bioavailability, self.line = into, lag, bioavailability, users_line()
+        name = _name_of(into)
+        ends = np.cumsum([len(rows) for rows in of_subjects])
+        rows = np.zeros((1 << int(ends[-1] - 1).bit_length(), 3))  # as generated code has the length, but not the rows
+        rows[:ends[-1]] = np.concatenate(of_subjects)
+        self.table = Table(sym.check_name(f"{name}_doses", "a table"), rows)
+        self.first, self.last = (sym.parameter(f"{what}_{name}_dose") for what in ("first", "last"))
+        self.sweep = {self.first: np.concatenate([[0.0], ends[:-1]]), self.last: ends - 1.0}
+        self.rate, self.until = (sym.accessory(f"{name}_{what}") for what in ("infused", "infused_until"))
+        self.is_infusion = bool((rows[:, 2] > 0).any())
+
+    @property
+    def values(self) -> list[Any]:
+        """All expressions of it."""
+        return [self.lag, self.bioavailability, self.first, self.last]
+
+    def read(self, expression: Callable[[Any, str], Any]) -> TabledDoses:
+        """With expressions in place of texts and numbers."""
+        self.lag = expression(self.lag, f"the lag of doses{at(self.line)}")
+        self.bioavailability = expression(self.bioavailability, f"the bioavailability of doses{at(self.line)}")
+        return self
+
+    def stops(self, target: Any, free_name: Callable[[str], str]) -> list[Stop]:
+        """The stop at which the state gets what is given at once, and the rate of infusions changes."""
+        row = minimum(self.first + sym.stop_number, self.last)
+        time, amount, rate = (make("lookup", (row,), (self.table, column, 3, len(self.table))) for column in range(3))
+        time = where(self.first + sym.stop_number < self.last, add(time, self.lag), np.inf)
+        do = {target: target + multiply(self.bioavailability, amount)}
+        if self.is_infusion:
+            do[self.rate] = rate
+        made = Stop([time], None, None, free_name(f"{target.value[1]}_dose"), do)
+        made.by_number, made.line = True, self.line
+        return [made]
+
+    def inflow(self) -> Any:
+        """What infusions add to the derivative of the state."""
+        return self.rate if self.is_infusion else constant(0.0)
+
+    def hooks(self) -> tuple[dict[Any, Any], dict[Any, Any]]:
+        """What is assigned at the start and at the end of a phase: infusions go on where a phase goes on in time from
+        the last one."""
+        if not self.is_infusion:
+            return {}, {}
+        goes_on = (sym.phase > 0) & (self.until == sym.time)
+        return {self.rate: where(goes_on, self.rate, 0.0)}, {self.until: sym.time}
+
+
+class DoseTable:
+    """Doses by subject. Made by `my.dose_table`; for `model.with_doses`."""
+
+    #: the ids of the subjects, in the order of the instances
+    ids: list[Any]
+    #: values of the parameters that say which rows are those of an instance: a part of the sweep
+    sweep: dict[Any, Array]
+    #: first and last time of each subject, for `time=`
+    time: tuple[Array, Array]
+    #: by name, a value for each subject: what other columns have
+    covariates: dict[str, Array]
+    #: times and values of observations, a row for each subject, NaN where it has fewer than others
+    observed_times: Array
+    observed: Array
+
+    def __init__(self, parts: list[TabledDoses]) -> None:
+        self.parts = parts
+        self.sweep = {name: values for part in parts for name, values in part.sweep.items()}
+
+    def __repr__(self) -> str:
+        states = " and ".join(_name_of(part.into) for part in self.parts)
+        return f"doses into {states} of {len(self.ids)} subjects"
+
+
+def dose_table(data: Mapping[str, Any] | Path, into: Component | Mapping[Any, Component], *, lag: Written = 0.0,
+               bioavailability: Written = 1.0) -> DoseTable:
+    """Doses for `model.with_doses` from a table: of pandas or polars, a dict of columns, or the path of a CSV file.
+
+    A row is a dose, or an observation, of a subject. The columns, in any order and case, with NONMEM's meanings:
+
+    id          the subject; each is an instance, in the order in which they come; without it there is one
+    time        in the model's unit; does not decrease within a subject
+    amt         the amount, in the unit of the state
+    evid        1 for a dose, 0 for an observation, 2 for neither; by default a row with an amount is a dose
+    cmt         which state gets it: a key of `into`; not needed where `into` is one state
+    rate, dur   of an infusion: amount by time, or how long it takes; 0 for a dose at once
+    addl, ii    so many more doses, at intervals of ii
+    dv, mdv     what was observed, unless mdv is 1
+
+    Other columns are covariates, numbers that do not change within a subject. A missing value is empty, "." or NaN.
+    `lag` and `bioavailability` are as in `my.doses`; they hold for all rows.
+
+    The result has what `solve` needs: `my.solve(model.with_doses(records), {**records.sweep, ...}, time=records.time)`.
+    Doses before the begin of the time domain are not given. Raises `my.Error`, with the number of the row, where a
+    value cannot be read or stands for what is not supported: a steady state (ss), a reset (evid 3 and 4), and rates
+    that parameters decide (below zero).
+    """
+    line, columns = users_line(), _read(data)
+    rows = len(next(iter(columns.values()), ()))
+    for name in ("time", "amt"):
+        if name not in columns:
+            raise Error(f"the table of doses has no column '{name}'{at(line)}: it has {', '.join(columns) or 'none'}")
+    numbers = {name: _numbers(name, columns[name], line) for name in _columns if name not in ("id", "cmt")
+               and name in columns}
+    value = {name: numbers.get(name, np.full(rows, np.nan)) for name in _columns}
+    ids = list(columns.get("id", ["1"] * rows))
+    order = list(dict.fromkeys(ids))
+    states = dict(into) if isinstance(into, Mapping) else {None: into}
+    given: dict[Any, list[list[tuple[float, float, float, float]]]] = {key: [[] for _ in order] for key in states}
+    seen: list[list[tuple[float, float]]] = [[] for _ in order]
+    begin, end = np.full(len(order), np.inf), np.full(len(order), -np.inf)
+    for row in range(rows):
+        of_row = {name: float(of_column[row]) for name, of_column in value.items()}
+        where_it_is, subject = f"row {row + 1} of the table of doses{at(line)}", order.index(ids[row])
+        time = of_row["time"]
+        if not np.isfinite(time) or time < end[subject]:
+            raise Error(f"{where_it_is} has the time {time}{'' if np.isnan(time) else f' after {end[subject]}'}: sort "
+                        "the rows of each subject by time")
+        begin[subject], end[subject] = min(begin[subject], time), time
+        if _is_dose(of_row, where_it_is):
+            key = _key(columns["cmt"][row] if "cmt" in columns else None, states, where_it_is)
+            given[key][subject] += _doses_of(of_row, where_it_is)
+        elif of_row["evid"] != 2 and of_row["mdv"] != 1 and not np.isnan(of_row["dv"]):
+            seen[subject].append((time, of_row["dv"]))
+    parts = [TabledDoses(states[key], [_rows(several) for several in of_subjects], lag, bioavailability)
+             for key, of_subjects in given.items() if any(of_subjects)]
+    if any(part.is_infusion for part in parts) and not (isinstance(bioavailability, (int, float))
+                                                        and bioavailability == 1):
+        raise Error(f"a table with infusions has the bioavailability {bioavailability!r}{at(line)}, which would change "
+                    "how long they take: write my.doses for each")
+    made = DoseTable(parts)
+    made.ids, made.time = order, (begin, end)
+    made.covariates = {name: _constant(name, of_column, ids, order, line) for name, of_column in columns.items()
+                       if name not in _columns}
+    most = max(map(len, seen), default=0)
+    padded = np.array([[*several, *[(np.nan, np.nan)] * (most - len(several))] for several in seen]
+                      ).reshape(len(order), most, 2)
+    made.observed_times, made.observed = padded[..., 0], padded[..., 1]
+    return made
+
+
+def _read(data: Any) -> dict[str, list[Any]]:
+    """The columns of a table, by name in small letters."""
+    if isinstance(data, (str, os.PathLike)):
+        with open(data, encoding="utf-8-sig", newline="") as file:
+            read = csv.DictReader(file)
+            rows = list(read)
+        data = {name: [row[name] for row in rows] for name in read.fieldnames or ()}
+    names = list(data) if isinstance(data, Mapping) else list(data.columns)
+    return {str(name).strip().lower(): list(data[name]) for name in names}
+
+
+def _number(given: Any) -> float:
+    if given is None or isinstance(given, str) and given.strip().lower() in ("", ".", "na", "nan"):
+        return float("nan")
+    return float(given)
+
+
+def _numbers(name: str, given: list[Any], line: tuple[str, int] | None) -> Array:
+    made = np.empty(len(given))
+    for row, one in enumerate(given):
+        try:
+            made[row] = _number(one)
+        except (TypeError, ValueError):
+            raise Error(f"row {row + 1} of the table of doses{at(line)} has {one!r} in the column '{name}': give a "
+                        "number") from None
+    return made
+
+
+def _is_dose(row: Mapping[str, float], where_it_is: str) -> bool:
+    evid = row["evid"] if not np.isnan(row["evid"]) else float(row["amt"] > 0)
+    if evid not in (0, 1, 2):
+        raise Error(f"{where_it_is} has evid {evid:g}" + (", a reset: give what follows another id" if evid in (3, 4) else
+                                                           ": 0, 1 and 2 are known"))
+    if evid == 1 and not row["amt"] > 0:
+        raise Error(f"{where_it_is} is a dose of {row['amt']:g}: give an amount above zero, or evid 0")
+    return evid == 1
+
+
+def _key(given: Any, states: Mapping[Any, Any], where_it_is: str) -> Any:
+    """Which of the states gets a dose."""
+    if list(states) == [None]:
+        return None
+    for key in states:
+        if str(key) == str(given) or not isinstance(key, str) and str(_number(given)) == str(float(key)):
+            return key
+    raise Error(f"{where_it_is} has cmt {given!r}: `into` has {', '.join(map(repr, states))}")
+
+
+def _doses_of(row: Mapping[str, float], where_it_is: str) -> list[tuple[float, float, float, float]]:
+    """Begin, end, amount at once and rate of the doses of a row."""
+    rate, duration, more, interval = (0.0 if np.isnan(row[name]) else row[name] for name in ("rate", "dur", "addl", "ii"))
+    if row["ss"] > 0:
+        raise Error(f"{where_it_is} has ss {row['ss']:g}, a steady state: give the doses before it, as many as it takes")
+    if rate < 0 or duration < 0:
+        raise Error(f"{where_it_is} has a rate or duration below zero, which a parameter would decide: write it as "
+                    "my.doses(..., rate=) or duration=")
+    if more > 0 and not interval > 0:
+        raise Error(f"{where_it_is} has addl {more:g} and ii {interval:g}: give the interval of further doses in ii")
+    if rate > 0 and duration > 0:
+        raise Error(f"{where_it_is} has both rate and dur: give one of them")
+    length = row["amt"] / rate if rate > 0 else duration
+    rate = row["amt"] / length if length > 0 else 0.0
+    begins = [row["time"] + k * interval for k in range(int(more) + 1)]
+    return [(begin, begin + length, 0.0 if length > 0 else row["amt"], rate) for begin in begins]
+
+
+def _rows(several: list[tuple[float, float, float, float]]) -> Array:
+    """The rows of a subject: times, amounts, and rates from then on."""
+    happening = sorted([(begin, amount) for begin, _, amount, _ in several]
+                       + [(end, 0.0) for _, end, _, rate in several if rate > 0], key=lambda one: one[0])
+    return np.array([*((time, amount, sum(rate for begin, end, _, rate in several if begin <= time < end))
+                       for time, amount in happening), (0.0, 0.0, 0.0)])
+
+
+def _constant(name: str, given: list[Any], ids: list[Any], order: list[Any], line: tuple[str, int] | None) -> Array:
+    """A covariate of each subject."""
+    numbers, of_rows = _numbers(name, given, line), np.array([order.index(one) for one in ids])
+    made = np.full(len(order), np.nan)
+    for subject, number in zip(of_rows, numbers):
+        if np.isnan(made[subject]):
+            made[subject] = number
+        elif number != made[subject] and not np.isnan(number):
+            raise Error(f"the column '{name}' of the table of doses{at(line)} changes within the subject "
+                        f"{order[subject]!r}, from {made[subject]:g} to {number:g}: leave it out, and interpolate it in "
+                        "the model by my.interpolate")
+    return made

@@ -1,0 +1,231 @@
+# SPDX-License-Identifier: MIT
+"""Doses, compared with sums of closed forms."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import myriad_ode as my
+
+gut, blood = my.states("gut blood")
+absorption, elimination, dose, interval, length, lag, part = my.parameters(
+    "absorption elimination dose interval length lag part")
+drug = my.model({gut: -absorption * gut, blood: absorption * gut - elimination * blood}, name="drug")
+rates = {absorption: 1.0, elimination: 0.2}
+file = Path(__file__).parent.parent / "examples" / "doses.xml"
+
+
+def solved(model, values, time=(0, 30), **options):
+    options = dict(start={gut: 0, blood: 0}, rtol=1e-10, atol=1e-10, interpreted=True) | options
+    return my.solve(model, {**rates, **values}, time=time, **options)
+
+
+def swallowed(times, amounts, t=30.0):
+    """What is in the blood, by Bateman's function."""
+    since = np.maximum(t - np.asarray(times, float), 0)
+    return np.sum(np.asarray(amounts) / 0.8 * (np.exp(-0.2 * since) - np.exp(-since)))
+
+
+def infused(begins, ends, rate, t=30.0):
+    """The same of what goes into the blood at a rate."""
+    begins, ends = np.minimum(begins, t), np.minimum(ends, t)
+    return rate / 0.2 * np.sum(np.exp(-0.2 * (t - ends)) - np.exp(-0.2 * (t - begins)))
+
+
+def test_doses_at_equal_intervals_come_as_often_as_there_are():
+    model = drug.with_doses(my.doses(gut, dose, at=1, every=interval, count=3, lag=lag, bioavailability=part))
+    run = solved(model, {dose: 100.0, interval: [4.0, 8.0, 20.0], lag: 0.5, part: 0.7})
+    expected = [swallowed([1.5 + k * every for k in range(3) if 1.5 + k * every <= 30], 70.0) for every in (4, 8, 20)]
+    np.testing.assert_allclose(run[blood], expected, rtol=1e-8)
+
+
+def test_doses_end_with_the_last_that_is_not_later_than_until():
+    model = drug.with_doses(my.doses(gut, 10, every=interval, until=lag))
+    run = solved(model, {interval: [0.1, 0.1, 0.3, 7.0], lag: [2.4, 2.39, 0.9, 6.9]})  # 2.4 / 0.1 is 23.999999999999996
+    expected = [swallowed(every * np.arange(count), 10.0) for every, count in ((0.1, 25), (0.1, 24), (0.3, 4), (7, 1))]
+    np.testing.assert_allclose(run[blood], expected, rtol=1e-8)
+
+
+def test_doses_at_given_times_have_amounts_of_their_own():
+    run = solved(drug.with_doses(my.doses(gut, [30, dose, 30, 2 * dose], at=[0, 2, 5, lag])), {dose: 7.0, lag: 11.0})
+    np.testing.assert_allclose(run[blood], swallowed([0, 2, 5, 11], [30, 7, 30, 14]), rtol=1e-8)
+
+
+def test_a_list_of_times_has_one_amount_if_one_is_given():
+    run = solved(drug.with_doses(my.doses(gut, 5, at=np.array([1, 1, 4]))), {}, size=1)
+    np.testing.assert_allclose(run[blood], swallowed([1, 1, 4], [5, 5, 5]), rtol=1e-8)
+
+
+def test_infusions_may_overlap():
+    run = solved(drug.with_doses(my.doses(blood, dose, every=5, count=4, duration=length)),
+                 {dose: 60.0, length: [2.0, 5.0, 12.0]})
+    begins = 5.0 * np.arange(4)
+    np.testing.assert_allclose(run[blood], [infused(begins, begins + d, 60 / d) for d in (2, 5, 12)], rtol=1e-8)
+
+
+def test_what_is_available_makes_infusions_of_a_rate_shorter_and_those_of_a_duration_slower():
+    of_rate = drug.with_doses(my.doses(blood, 60, at=[1, 9], rate=20, bioavailability=part))
+    np.testing.assert_allclose(solved(of_rate, {part: 0.5})[blood], infused(np.array([1, 9]), np.array([2.5, 10.5]), 20),
+                               rtol=1e-8)
+    of_duration = drug.with_doses(my.doses(blood, 60, at=[1, 9], duration=3, bioavailability=part))
+    np.testing.assert_allclose(solved(of_duration, {part: 0.5})[blood],
+                               infused(np.array([1, 9]), np.array([4, 12]), 10), rtol=1e-8)
+
+
+@pytest.mark.parametrize("given", [dict(), dict(duration=7)])
+def test_doses_go_on_over_phases(given):
+    model = drug.with_doses(my.doses(blood, 100, every=5, **given))
+    whole = solved(model, {}, size=1, time=(0, 40))
+    parts = solved(model, {}, size=1, time=(0, 40), phases=8, phase_length=5)
+    np.testing.assert_allclose(parts[blood], whole[blood], rtol=1e-9)
+
+
+def test_doses_have_derivatives():
+    model = drug.with_doses(my.doses(gut, dose, every=interval, count=3, lag=lag, bioavailability=part),
+                            my.doses(blood, dose, at=[1, 2.5], duration=length, lag=lag))
+    values = {dose: 100.0, interval: 8.0, lag: 0.5, part: 0.7, length: 3.0}
+    run = solved(model, values, free=list(values), interpreted=None)
+    for name, value in values.items():
+        change = 1e-5 * value * np.array([1, -1])
+        ends = solved(model, {**values, name: value + change})[blood]
+        np.testing.assert_allclose(run.sensitivity[blood, name], (ends[0] - ends[1]) / (change[0] - change[1]),
+                                   rtol=1e-6)
+
+
+def test_doses_go_into_models_from_files():
+    pytest.importorskip("libsbml")
+    read = my.read_sbml(file)
+    times = dict(time=(0, 60), samples=21, rtol=1e-9, atol=1e-9, interpreted=True)
+    own = my.solve(read, {"dose": 100.0}, **times)
+    given = my.solve(read.with_doses(my.doses("gut", 100, every=12)), {"dose": 0.0}, **times)
+    np.testing.assert_allclose(given["drug"][0, 1:], own["drug"][0, 1:], rtol=1e-6)
+    xpp = my.read_xpp("par k=.5\nx'=-k*x\n").with_doses(my.doses("x", dose, at=[0, 1]))
+    run = my.solve(xpp, {dose: 2.0}, time=(0, 2), interpreted=True, rtol=1e-10, atol=1e-10)
+    np.testing.assert_allclose(run["x"], 2 * (np.exp(-1) + np.exp(-0.5)), rtol=1e-8)
+
+
+def test_a_model_stays_as_it_is_where_one_with_doses_is_made_of_it():
+    acts = my.accessory("acts")
+    given = my.model({blood: my.where(my.time > interval, 1, 0) - elimination * blood}, accessories={acts: None},
+                     initialise={acts: 0}, stops=my.stop(3, do={interval: interval + 4, acts: acts + 1}),
+                     triggers=my.trigger(blood > 1, do={interval: interval + 1}))
+    text = given.cpp()
+    model = given.with_doses(my.doses(blood, 5, at=1)).with_doses(my.doses(blood, 7, at=2))
+    assert given.cpp() == text
+    at_once = given.with_doses(my.doses(blood, 5, at=1), my.doses(blood, 7, at=2))
+    assert at_once.cpp() == model.cpp() != text
+
+
+def test_doses_at_the_ends_of_the_time_domain_count():
+    run = solved(drug.with_doses(my.doses(gut, 3, at=[0, 30])), {}, size=1)
+    np.testing.assert_allclose(run[gut], 3 + 3 * np.exp(-30.0))
+
+
+@pytest.mark.parametrize("wrong, message", [
+    (lambda: my.doses(gut, [1, 2], at=[0, 1, 2]), "2 amounts at 3 times.*: give one amount, or one for each time"),
+    (lambda: my.doses(gut, 1, at=[]), "1 amounts at 0 times|0 amounts at 0 times"),
+    (lambda: my.doses(gut, 1, at=[3, 2]), "decrease"),
+    (lambda: my.doses(gut, 1, at=[1, 2], every=3), "give one time, of the first dose, with every="),
+    (lambda: my.doses(gut, 1, count=3), "count= but no interval.*: give every="),
+    (lambda: my.doses(gut, 1, every=1, count=3, until=4), "give one of them"),
+    (lambda: my.doses(gut, 1, rate=1, duration=2), "give one of them"),
+    (lambda: drug.with_doses("gut"), "with_doses gets a str.*: make it by my.doses"),
+    (lambda: drug.with_doses(my.doses(dose, 1)), "doses go into dose.*, which is no state.*: choose one of gut, blood"),
+    (lambda: drug.with_doses(my.doses("stomach", 1)), "stomach"),
+    (lambda: drug.with_doses(my.doses(gut, 1, at=gut)), "gut stands in the time"),
+    (lambda: my.CppModel("struct m {};", "m", "x").with_doses(my.doses("x", 1)), "no recorded one"),
+    (lambda: my.with_sensitivities(drug, [absorption]).with_doses(my.doses(gut, 1)), "no recorded one"),
+])
+def test_what_does_not_fit_is_refused(wrong, message):
+    with pytest.raises(my.Error, match=message):
+        wrong()
+
+
+# Tables
+
+subjects = dict(ID=[1, 1, 1, 2, 2, 3, 3], TIME=[0, 4, 12, 0, 10, 1, 2], AMT=[100, 0, 50, 80, ".", 20, 30],
+                ADDL=[0, 0, 2, 0, 0, 0, 0], II=[0, 0, 6, 0, 0, 0, 0], CMT=[1, 1, 1, 1, 2, 1, 2],
+                RATE=[0, 0, 0, 0, 0, 0, 10], DV=[".", 3.0, ".", ".", 5.0, ".", "."], WT=[70, 70, 70, 80, 80, 60, 60])
+of_subjects = [swallowed([0, 12, 18, 24], [100, 50, 50, 50]), swallowed([0], [80]),
+               swallowed([1], [20]) + infused(np.array([2.0]), np.array([5.0]), 10)]
+
+
+@pytest.mark.parametrize("interpreted", [True, False])
+def test_a_table_gives_each_subject_its_doses(interpreted):
+    records = my.dose_table(subjects, {1: gut, 2: blood})
+    run = solved(drug.with_doses(records), records.sweep, interpreted=interpreted)
+    np.testing.assert_allclose(run[blood], of_subjects, rtol=1e-8)
+
+
+def test_a_table_tells_covariates_observations_and_times():
+    records = my.dose_table(subjects, {1: gut, 2: blood})
+    assert records.ids == [1, 2, 3] and [list(end) for end in records.time] == [[0, 0, 1], [12, 10, 2]]
+    np.testing.assert_array_equal(records.covariates["wt"], [70, 80, 60])
+    np.testing.assert_array_equal(records.observed_times, [[4], [10], [np.nan]])
+    np.testing.assert_array_equal(records.observed, [[3], [5], [np.nan]])
+
+
+def test_a_table_comes_from_a_file_or_a_data_frame(tmp_path):
+    pandas = pytest.importorskip("pandas")
+    path = tmp_path / "subjects.csv"
+    pandas.DataFrame(subjects).to_csv(path, index=False)
+    of_file = my.dose_table(path, {"1": gut, "2": blood})
+    of_frame = my.dose_table(pandas.DataFrame(subjects), {1: gut, 2: blood})
+    assert of_file.ids == ["1", "2", "3"] and of_frame.ids == [1, 2, 3]
+    for one in (of_file, of_frame):
+        np.testing.assert_allclose(solved(drug.with_doses(one), one.sweep)[blood], of_subjects, rtol=1e-8)
+
+
+def test_doses_of_a_table_may_come_later_and_in_part():
+    records = my.dose_table(dict(time=[0, 3], amt=[10, 20]), gut, lag=lag, bioavailability=part)
+    run = solved(drug.with_doses(records), {**records.sweep, lag: 0.5, part: 0.25})
+    np.testing.assert_allclose(run[blood], swallowed([0.5, 3.5], [2.5, 5]), rtol=1e-8)
+
+
+def test_infusions_of_a_table_may_overlap_and_go_on_over_phases():
+    records = my.dose_table(dict(time=[0, 5, 6, 20], amt=[70, 70, 7, 30], dur=[7, 7, 0, 3]), blood)
+    expected = infused(np.array([0, 5]), np.array([7, 12]), 10) + infused(np.array([20]), np.array([23]), 10)
+    expected += 7 * np.exp(-0.2 * 24)
+    for phases in (dict(), dict(phases=6, phase_length=5)):
+        run = solved(drug.with_doses(records), records.sweep, **phases)
+        np.testing.assert_allclose(run[blood], expected, rtol=1e-8)
+
+
+def test_tables_with_other_rows_need_no_other_kernel():
+    first, second = (my.dose_table(dict(id=[1, 1, 2], time=[0, k, 3], amt=[k, 20, 5]), gut) for k in (1, 2))
+    assert drug.with_doses(first).cpp() == drug.with_doses(second).cpp()
+
+
+def test_a_subject_may_have_no_dose():
+    records = my.dose_table(dict(id=["b", "a"], time=[0, 0], amt=[0, 8], dv=[1, "."]), gut)
+    np.testing.assert_allclose(solved(drug.with_doses(records), records.sweep)[blood], [0, swallowed([0], [8])],
+                               rtol=1e-8)
+
+
+@pytest.mark.parametrize("columns, message", [
+    (dict(amt=[1]), "no column 'time'"),
+    (dict(time=[0, 2, 1], amt=[1, 1, 1]), r"row 3 .* has the time 1.0 after 2.0: sort the rows"),
+    (dict(time=[0], amt=["much"]), "row 1 .* has 'much' in the column 'amt'"),
+    (dict(time=[0], amt=[1], ss=[1], ii=[12]), "a steady state: give the doses before it"),
+    (dict(time=[0], amt=[1], evid=[4]), "a reset: give what follows another id"),
+    (dict(time=[0], amt=[1], evid=[7]), "evid 7: 0, 1 and 2 are known"),
+    (dict(time=[0], amt=[0], evid=[1]), "a dose of 0: give an amount above zero"),
+    (dict(time=[0], amt=[1], rate=[-2]), "below zero"),
+    (dict(time=[0], amt=[1], rate=[2], dur=[2]), "both rate and dur"),
+    (dict(time=[0], amt=[1], addl=[3]), "give the interval of further doses in ii"),
+    (dict(time=[0, 1], amt=[1, 1], age=[50, 51]), "'age' .* changes within the subject .*, from 50 to 51"),
+])
+def test_rows_that_cannot_be_read_are_refused_by_their_number(columns, message):
+    with pytest.raises(my.Error, match=message):
+        my.dose_table(columns, gut)
+
+
+def test_a_dose_into_an_unknown_compartment_is_refused():
+    with pytest.raises(my.Error, match="row 2 .* has cmt 3: `into` has 1, 2"):
+        my.dose_table(dict(time=[0, 1], amt=[1, 1], cmt=[1, 3]), {1: gut, 2: blood})
+
+
+def test_a_table_with_infusions_has_no_bioavailability():
+    with pytest.raises(my.Error, match="has the bioavailability"):
+        my.dose_table(dict(time=[0], amt=[1], dur=[1]), gut, bioavailability=part)
