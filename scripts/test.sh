@@ -113,8 +113,7 @@ build() {
 }
 
 # The files whose kernels are compiled for GPUs without --all: one for each feature that the kernels in tests/cuda lack.
-features=(controller_policies dae first_step_models function_values hooked_steps jumps phased queued
-    random_draws stiff_tangents tangent_jumps with_events)
+features=(dae function_values hooked_steps jumps queued random_draws stiff_tangents tangent_jumps with_events)
 
 # The programs that test both backends in one program without a GPU, and with --all every kernel, for GPUs alone
 # (tests/cuda/budgets.cu has the benchmarks' kernels, and scripts/case_studies.sh builds the case studies).
