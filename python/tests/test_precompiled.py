@@ -2,6 +2,7 @@
 """Headers that are prepared once for the compiler: the same kernels in less time, nothing lost where they are bad."""
 
 import os
+import shutil
 import subprocess
 import sys
 
@@ -21,18 +22,27 @@ print(run.report.kernel, run["x"][0].hex(), round(run.report.compile_seconds, 3)
 """
 
 
-@pytest.fixture
-def prepared(tmp_path, monkeypatch):
-    """A cache whose headers a first program has left."""
-    by = compiler.known_compiler()
-    if by.kind not in ("clang++", "g++"):
+@pytest.fixture(scope="module")
+def left(tmp_path_factory):
+    """A cache whose headers a first program has left, and what that told."""
+    if compiler.known_compiler().kind not in ("clang++", "g++"):
         pytest.skip("this compiler prepares no headers")
+    folder = tmp_path_factory.mktemp("left")
+    return folder, solved(0.5, MYRIAD_CACHE_DIR=str(folder))
+
+
+@pytest.fixture
+def prepared(left, tmp_path, monkeypatch):
+    """A copy of that cache."""
+    folder, first = left
+    shutil.copytree(folder, tmp_path, dirs_exist_ok=True)
     monkeypatch.setenv("MYRIAD_CACHE_DIR", str(tmp_path))
-    return tmp_path, solved(0.5), by
+    return tmp_path, first, compiler.known_compiler()
 
 
-def solved(factor):
-    told = subprocess.run([sys.executable, "-c", MODEL, str(factor)], capture_output=True, text=True, check=True).stdout
+def solved(factor, **environment):
+    told = subprocess.run([sys.executable, "-c", MODEL, str(factor)], capture_output=True, text=True, check=True,
+                          env={**os.environ, **environment}).stdout
     return told.split()
 
 
