@@ -26,9 +26,9 @@ PAGES = {
                       "base.statuses", "sweeps.sweep", "symbolic.axes", "results.gpu_results", "base.errors",
                       "models.methods"]),
     "python_model": ("Python: models", "Equations, events and hooks, and the symbols and functions in them.",
-                     ["codegen.model", "models.event", "models.trigger", "symbolic.symbols", "symbolic.functions",
-                      "symbolic.expression", "symbolic.interpolate", "symbolic.table", "models.tangents",
-                      "results.exponents", "models.cpp_model", "formats.sbml.model", "models.units",
+                     ["codegen.model", "models.event", "models.doses", "models.dose_table", "models.trigger",
+                      "symbolic.symbols", "symbolic.functions", "symbolic.expression", "symbolic.interpolate",
+                      "symbolic.table", "models.tangents", "results.exponents", "models.cpp_model", "formats.sbml.model", "models.units",
                       "formats.xpp.model"]),
     "python_fit": ("Python: sensitivities and fits", "Derivatives of results, and what is fitted to data by them.",
                    ["models.sensitivities", "results.sensitivities", "gradients.batched", "inference.least_squares",
@@ -43,7 +43,8 @@ PAGES = {
 }
 # Classes that public functions return, whose members users call though they do not make them.
 RETURNED = {"results.report": ["Report"], "sweeps.sweep": ["Sweep"], "symbolic.axes": ["Axis"],
-            "symbolic.table": ["Table"], "studies.reduce": ["Reduction"], "models.tangents": ["WithTangents"],
+            "symbolic.table": ["Table"], "models.dose_table": ["DoseTable"],
+            "studies.reduce": ["Reduction"], "models.tangents": ["WithTangents"],
             "results.run_plots": ["Plots"], "inference.profile": ["Profile"],
             "inference.designs": ["Design", "Indices"], "results.gpu_results": ["DeviceArray", "DeviceResults"],
             "symbolic.expression": ["Expression", "Condition"]}

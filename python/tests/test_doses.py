@@ -66,8 +66,8 @@ def test_infusions_may_overlap():
 
 def test_what_is_available_makes_infusions_of_a_rate_shorter_and_those_of_a_duration_slower():
     of_rate = drug.with_doses(my.doses(blood, 60, at=[1, 9], rate=20, bioavailability=part))
-    np.testing.assert_allclose(solved(of_rate, {part: 0.5})[blood], infused(np.array([1, 9]), np.array([2.5, 10.5]), 20),
-                               rtol=1e-8)
+    np.testing.assert_allclose(solved(of_rate, {part: 0.5})[blood],
+                               infused(np.array([1, 9]), np.array([2.5, 10.5]), 20), rtol=1e-8)
     of_duration = drug.with_doses(my.doses(blood, 60, at=[1, 9], duration=3, bioavailability=part))
     np.testing.assert_allclose(solved(of_duration, {part: 0.5})[blood],
                                infused(np.array([1, 9]), np.array([4, 12]), 10), rtol=1e-8)

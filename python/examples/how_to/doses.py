@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Doses at known times: the same for all, a regimen for each instance, a loading dose, infusions."""
+"""Doses at known times: the same for all, a regimen for each instance, infusions, and those of a table."""
 
 import numpy as np
 
@@ -10,8 +10,8 @@ gut, blood = my.states("gut blood")
 dose, interval = my.parameters("dose interval")
 absorption, elimination = my.shared("absorption elimination")
 
-swallowed = my.model({gut: -absorption * gut, blood: absorption * gut - elimination * blood}, name="swallowed",
-                     stops=my.stop(0, every=interval, count=10, do={gut: gut + dose}))
+drug = my.model({gut: -absorption * gut, blood: absorption * gut - elimination * blood}, name="drug")
+swallowed = drug.with_doses(my.doses(gut, dose, every=interval, count=10))
 
 regimens = my.grid({dose: [50, 100], interval: [8, 12, 24], absorption: 1.0, elimination: 0.2})  # hours
 run = my.solve(swallowed, regimens, start={gut: 0, blood: 0}, time=(0, 72), samples=400)
@@ -19,15 +19,21 @@ run.plot.time_series("blood").figure.savefig("doses.png")
 # end of snippet
 
 # snippet: listed
-listed = my.model({gut: -absorption * gut, blood: absorption * gut - elimination * blood}, name="listed", stops=[
-    my.stop(0, do={gut: gut + 2 * dose}),              # a loading dose
-    my.stop([12, 24, 30, 48], do={gut: gut + dose}),   # and doses at any times
-])
+listed = drug.with_doses(my.doses(gut, 2 * dose),                    # a loading dose
+                         my.doses(gut, dose, at=[12, 24, 30, 48]))   # and doses at any times
 # end of snippet
 
 # snippet: infusion
-rate, hours = my.parameters("rate hours")
-infused = my.model({blood: my.where(my.time % 24 < hours, rate, 0) - elimination * blood}, name="infused")
+hours = my.parameter("hours")
+infused = drug.with_doses(my.doses(blood, dose, every=24, duration=hours))
+# end of snippet
+
+# snippet: table
+subjects = {"id": [1, 1, 1, 2, 2], "time": [0, 24, 30, 0, 4], "amt": [100, 50, ".", 80, "."],
+            "cmt": [1, 1, ".", 1, "."], "dv": [".", ".", 70.3, ".", 39.1], "weight": [70, 70, 70, 81, 81]}
+records = my.dose_table(subjects, {1: gut, 2: blood})
+of_subjects = my.solve(drug.with_doses(records), {**records.sweep, absorption: 1.0, elimination: 0.2},
+                       start={gut: 0, blood: 0}, time=records.time)
 # end of snippet
 
 
@@ -46,5 +52,8 @@ body = {absorption: 1.0, elimination: 0.2}
 run = my.solve(listed, {dose: [50], **body}, start={gut: 0, blood: 0}, time=(0, 72), samples=100)
 np.testing.assert_allclose(run[blood][0], amount_in_blood(run.t_sample[0], [0, 12, 24, 30, 48], [100, 50, 50, 50, 50]),
                            atol=1e-5)
-run = my.solve(infused, {rate: [10], hours: [2], elimination: 0.2}, start={blood: 0}, time=(0, 24))
-np.testing.assert_allclose(run[blood], 10 / 0.2 * (1 - np.exp(-0.4)) * np.exp(-0.2 * 22), rtol=1e-6)
+run = my.solve(infused, {dose: [20], hours: [2], **body}, start={gut: 0, blood: 0}, time=(0, 22))
+np.testing.assert_allclose(run[blood], 10 / 0.2 * (1 - np.exp(-0.4)) * np.exp(-0.2 * 20), rtol=1e-6)
+expected = [amount_in_blood(np.array([end]), times, amounts)[0] for end, times, amounts in
+            ((30, [0, 24], [100, 50]), (4, [0], [80]))]
+np.testing.assert_allclose(of_subjects[blood], expected, rtol=1e-5)

@@ -84,8 +84,8 @@ class AnyModel(ComponentNames):
 
     def with_doses(self, *several: Any) -> AnyModel:
         """The model whose states get these doses; here a refusal, of a model that is not recorded."""
-        raise Error(f"the model {self.name} is no recorded one, to which doses can be added{at(users_line())}: add them "
-                    "to the model that it is made of, or write them as stops")
+        raise Error(f"the model {self.name} is no recorded one, to which doses can be added{at(users_line())}: add "
+                    "them to the model that it is made of, or write them as stops")
 
     def cpp(self) -> str:
         """The model as the text of a C++ header."""

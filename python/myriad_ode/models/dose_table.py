@@ -22,7 +22,7 @@ from .event import Stop
 if TYPE_CHECKING:
     from ..symbolic.types import Array, Component, Path, Written
 
-__all__ = ["dose_table", "DoseTable"]
+__all__ = ["dose_table"]
 
 _columns = ("id", "time", "amt", "evid", "cmt", "rate", "dur", "ii", "addl", "ss", "dv", "mdv")
 
@@ -205,8 +205,8 @@ def _numbers(name: str, given: list[Any], line: tuple[str, int] | None) -> Array
 def _is_dose(row: Mapping[str, float], where_it_is: str) -> bool:
     evid = row["evid"] if not np.isnan(row["evid"]) else float(row["amt"] > 0)
     if evid not in (0, 1, 2):
-        raise Error(f"{where_it_is} has evid {evid:g}" + (", a reset: give what follows another id" if evid in (3, 4) else
-                                                           ": 0, 1 and 2 are known"))
+        what = ", a reset: give what follows another id" if evid in (3, 4) else ": 0, 1 and 2 are known"
+        raise Error(f"{where_it_is} has evid {evid:g}{what}")
     if evid == 1 and not row["amt"] > 0:
         raise Error(f"{where_it_is} is a dose of {row['amt']:g}: give an amount above zero, or evid 0")
     return evid == 1
@@ -224,9 +224,11 @@ def _key(given: Any, states: Mapping[Any, Any], where_it_is: str) -> Any:
 
 def _doses_of(row: Mapping[str, float], where_it_is: str) -> list[tuple[float, float, float, float]]:
     """Begin, end, amount at once and rate of the doses of a row."""
-    rate, duration, more, interval = (0.0 if np.isnan(row[name]) else row[name] for name in ("rate", "dur", "addl", "ii"))
+    rate, duration, more, interval = (0.0 if np.isnan(row[name]) else row[name]
+                                      for name in ("rate", "dur", "addl", "ii"))
     if row["ss"] > 0:
-        raise Error(f"{where_it_is} has ss {row['ss']:g}, a steady state: give the doses before it, as many as it takes")
+        raise Error(f"{where_it_is} has ss {row['ss']:g}, a steady state: give the doses before it, as many as it "
+                    "takes")
     if rate < 0 or duration < 0:
         raise Error(f"{where_it_is} has a rate or duration below zero, which a parameter would decide: write it as "
                     "my.doses(..., rate=) or duration=")
@@ -257,6 +259,6 @@ def _constant(name: str, given: list[Any], ids: list[Any], order: list[Any], lin
             made[subject] = number
         elif number != made[subject] and not np.isnan(number):
             raise Error(f"the column '{name}' of the table of doses{at(line)} changes within the subject "
-                        f"{order[subject]!r}, from {made[subject]:g} to {number:g}: leave it out, and interpolate it in "
-                        "the model by my.interpolate")
+                        f"{order[subject]!r}, from {made[subject]:g} to {number:g}: leave it out, and interpolate it "
+                        "in the model by my.interpolate")
     return made

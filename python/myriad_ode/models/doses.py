@@ -19,7 +19,7 @@ from .event import Stop, stop
 if TYPE_CHECKING:
     from ..symbolic.types import Component, Written
 
-__all__ = ["doses", "Doses"]
+__all__ = ["doses"]
 
 # A quotient this close below a whole number is that number: (24 - 0) / 0.1 is 239.99999999999997.
 _rounding = 1e-12
@@ -72,6 +72,7 @@ class Doses:
 
     @property
     def is_infusion(self) -> bool:
+        """Whether doses take a while."""
         return self.rate is not None or self.duration is not None
 
     def stops(self, target: Any, free_name: Callable[[str], str]) -> list[Stop]:
@@ -81,11 +82,12 @@ class Doses:
         given = dict(zip(map(id, self.amounts), self.amounts))
         made = []
         for key, amount in given.items():
-            times = [add(time, self.lag) for one, time in zip(self.amounts, self.times) if id(one) == key]
+            times = [add(time, self.lag) for of_time, time in zip(self.amounts, self.times) if id(of_time) == key]
             interval = {} if self.every is None else {"every": self.every, "count": self.number}
-            made.append(stop(times if self.every is None else times[0], **interval, name=free_name(f"{target.value[1]}_dose"),
-                             do={target: target + multiply(self.bioavailability, amount)}))
-            made[-1].line = self.line
+            one = stop(times if self.every is None else times[0], **interval, name=free_name(f"{target.value[1]}_dose"),
+                       do={target: target + multiply(self.bioavailability, amount)})
+            one.line = self.line
+            made.append(one)
         return made
 
     def hooks(self) -> tuple[dict[Any, Any], dict[Any, Any]]:
@@ -135,21 +137,22 @@ def doses(into: Component, amount: Written | Sequence[Written], *, at: Written |
     if len(amounts) == 1:
         amounts *= len(times)
     if not times or len(amounts) != len(times):
-        raise Error(f"doses have {len(amounts)} amounts at {len(times)} times{written_at(line)}: give one amount, or one for "
-                    "each time")
+        raise Error(f"doses have {len(amounts)} amounts at {len(times)} times{written_at(line)}: give one amount, or "
+                    "one for each time")
     numbers = [time for time in times if isinstance(time, (int, float, np.number))]
     if len(numbers) == len(times) and any(later < earlier for earlier, later in zip(numbers, numbers[1:])):
         raise Error(f"the times {times!r} of doses decrease{written_at(line)}: sort them")
     if every is not None and len(times) > 1:
-        raise Error(f"doses have {len(times)} times and every={every!r}{written_at(line)}: give one time, of the first dose, "
-                    "with every=, or all times")
+        raise Error(f"doses have {len(times)} times and every={every!r}{written_at(line)}: give one time, of the first "
+                    "dose, with every=, or all times")
     if count is not None and until is not None:
         raise Error(f"doses have count={count!r} and until={until!r}{written_at(line)}: give one of them")
     if every is None and (count is not None or until is not None):
-        raise Error(f"doses have {'count' if until is None else 'until'}= but no interval{written_at(line)}: give every=")
+        given = "count" if until is None else "until"
+        raise Error(f"doses have {given}= but no interval{written_at(line)}: give every=")
     if rate is not None and duration is not None:
-        raise Error(f"doses have rate={rate!r} and duration={duration!r}{written_at(line)}: give one of them, from which the "
-                    "amount gives the other")
+        raise Error(f"doses have rate={rate!r} and duration={duration!r}{written_at(line)}: give one of them, from "
+                    "which the amount gives the other")
     return Doses(into, amounts, times, every, count, until, rate, duration, lag, bioavailability)
 
 

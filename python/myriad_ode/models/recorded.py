@@ -119,8 +119,9 @@ class RecordedModel(AnyModel):
     def _switch(self, moves: Callable[[set[Any]], bool] | None) -> None:
         """Makes jumps in time exact. `moves`: the symbols that jumps with stops of their own have times from."""
         given = self._as_given
-        self.events, self.stops, self.triggers = ([copy.copy(one) for one in several]
-                                                  for several in (given.events, given.stops, given.triggers))
+        self.events = [copy.copy(one) for one in given.events]
+        self.stops = [copy.copy(one) for one in given.stops]
+        self.triggers = [copy.copy(one) for one in given.triggers]
         self.edges = list(edges_of(self.triggers, self.queue))
         taken: list[str] = []
 
@@ -189,13 +190,14 @@ class RecordedModel(AnyModel):
 
         wrong = next((one for one in several if not isinstance(one, (Doses, DoseTable))), None)
         if wrong is not None:
-            raise Error(f"with_doses gets a {type(wrong).__name__}{at(line)}: make it by my.doses(state, amount, at=...)")
+            raise Error(f"with_doses gets a {type(wrong).__name__}{at(line)}: make it by my.doses(state, amount, "
+                        "at=...)")
         stops = []
         for one in [part for table in several for part in table.parts]:
             target = reader.target(self.aliases.get(one.into, one.into), "doses")
             if target not in made.equations:
-                raise Error(f"doses go into {target.value[1]}{at(one.line)}, which is no state of the model: choose one "
-                            f"of {', '.join(self.states)}")
+                raise Error(f"doses go into {target.value[1]}{at(one.line)}, which is no state of the model: choose "
+                            f"one of {', '.join(self.states)}")
             one = one.read(reader.expression)
             names += [symbol.value[1] for symbol in symbols_of(one.values)]
             made.equations[target] = add(made.equations[target], one.inflow())
