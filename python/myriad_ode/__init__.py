@@ -46,6 +46,7 @@ from .studies.study import Study as Study, study as study
 from .sweeps.sweep import *  # noqa: F403
 from .symbolic import numpy_functions as numpy_functions
 from .symbolic.axes import *  # noqa: F403
+from .symbolic.distributions import *  # noqa: F403
 from .symbolic.expression import *  # noqa: F403
 from .symbolic.functions import *  # noqa: F403
 from .symbolic.interpolate import *  # noqa: F403
@@ -63,8 +64,8 @@ _public = ["CppModel", "Damage", "Error", "EventChoice", "Interrupted", "Options
                                "inference.least_squares", "models.dose_table", "models.doses", "models.event",
                                "models.sensitivities", "models.tangents", "models.trigger", "models.units",
                                "results.exponents", "results.sensitivities", "sweeps.sweep", "symbolic.axes",
-                               "symbolic.expression", "symbolic.functions", "symbolic.interpolate", "symbolic.symbols",
-                               "symbolic.table")
+                               "symbolic.distributions", "symbolic.expression", "symbolic.functions",
+                               "symbolic.interpolate", "symbolic.symbols", "symbolic.table")
              for name in _sys.modules[f"{__name__}.{part}"].__all__)]
 # What `from myriad_ode import *` brings: nothing that has the name of a function of Python's, such as abs.
 __all__ = [name for name in _public if not hasattr(_builtins, name)]
