@@ -61,9 +61,10 @@ _public = ["CppModel", "Damage", "Error", "EventChoice", "Interrupted", "Options
            *(name for part in ("codegen.model", "dynamics.attractors", "dynamics.continuation", "dynamics.hysteresis",
                                "dynamics.steady_states", "gradients.batched", "inference.experiments",
                                "inference.fitting", "inference.least_squares", "inference.likelihood", "models.event",
-                               "models.sensitivities", "models.tangents", "models.trigger", "models.units", "results.exponents", "results.sensitivities",
-                               "sweeps.sweep", "symbolic.axes", "symbolic.expression", "symbolic.functions",
-                               "symbolic.interpolate", "symbolic.symbols", "symbolic.table")
+                               "models.sensitivities", "models.tangents", "models.trigger", "models.units",
+                               "results.exponents", "results.sensitivities", "sweeps.sweep", "symbolic.axes",
+                               "symbolic.expression", "symbolic.functions", "symbolic.interpolate",
+                               "symbolic.symbols", "symbolic.table")
              for name in _sys.modules[f"{__name__}.{part}"].__all__)]
 # What `from myriad_ode import *` brings: nothing that has the name of a function of Python's, such as abs.
 __all__ = [name for name in _public if not hasattr(_builtins, name)]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Fits of several experiments: shared and own components, conditions, noise models, limits, priors, long tables. The model
-is a drug that is absorbed and eliminated, whose solution is known."""
+"""Fits of several experiments: shared and own components, conditions, noise models, limits, priors, long tables. The
+model is a drug that is absorbed and eliminated, whose solution is known."""
 
 import numpy as np
 import pytest
@@ -135,7 +135,8 @@ def test_the_likelihood_of_noise_models_is_the_sum_of_scipys_densities(sigma, de
 
 @pytest.mark.parametrize("sigma, cumulative", [
     (my.noise_models.constant("a"), lambda stats, limit, f: stats.norm.logcdf((limit - f) / 0.4)),
-    (my.noise_models.combined("a", "b"), lambda stats, limit, f: stats.norm.logcdf((limit - f) / np.hypot(0.4, 0.1 * f))),
+    (my.noise_models.combined("a", "b"),
+     lambda stats, limit, f: stats.norm.logcdf((limit - f) / np.hypot(0.4, 0.1 * f))),
     (my.noise_models.log_normal("a"), lambda stats, limit, f: stats.norm.logcdf(np.log(limit / f) / 0.4)),
 ])
 def test_values_beyond_limits_have_the_probability_of_that(sigma, cumulative):
@@ -302,13 +303,13 @@ one = my.experiment(good, start={gut: 1})
 
 @pytest.mark.parametrize("data, changed, message", [
     ([], {"own": ke}, "the list of experiments is empty"),
-    ([one, my.experiment(good)], {}, "experiment '2' has no value of 'gut', which others set: give it in its start=, or"),
+    ([one, my.experiment(good)], {}, "experiment '2' has no value of 'gut', which others set: give it in its start="),
     ([one, my.experiment({"t": [], blood: []}, start={gut: 1})], {}, "data of experiment '2' of 'blood' has .* none"),
     ([one, my.experiment({"t": [1, 2], "bloood": [1, 1]}, start={gut: 1})], {}, "did you mean 'blood'"),
     ([one, my.experiment({"t": [-1, 2], blood: [1, 1]}, start={gut: 1})], {}, "data of experiment '2' has the time -1"),
     ([one, my.experiment({blood: [1, 1]}, start={gut: 1})], {}, "data of experiment '2' has no times"),
     ([my.experiment(good, name="a")] * 2, {}, "2 experiments with the name 'a'"),
-    ([one, my.experiment(good, start={gut: 1}, sweep={"kr": 1})], {}, "'kr' is no parameter or state that an experiment"),
+    ([one, my.experiment(good, start={gut: 1}, sweep={"kr": 1})], {}, "'kr' is no parameter or state that an"),
     ([one, my.experiment(good, sweep={gut: 1})], {}, "'gut' is in sweep= of experiment '2': give it in start="),
     ([one, my.experiment(good, start={gut: "g"})], {}, "'gut' in experiment '2' is 'g', which free= does not have"),
     ([one, one], {"own": ka}, "'ka' is no component of free=, for own="),
@@ -334,8 +335,15 @@ def test_experiments_that_do_not_fit_together_are_refused(data, changed, message
         my.fit(model, data, **{"free": {ke: (0.1, 1)}, "sweep": {ka: 1}, "start": {blood: 0}, **changed})
 
 
+def test_a_shared_value_cannot_differ_by_experiment():
+    rate = my.shared("rate")
+    drained = my.model({blood: -rate * blood}, name="drained")
+    with pytest.raises(my.Error, match="experiments set 'rate', which is no parameter or state: make it a parameter"):
+        my.fit(drained, [my.experiment(good, sweep={rate: 1})], free={blood: (0.1, 1)})
+
+
 def test_values_that_no_experiment_can_have_are_refused_where_they_are_given():
-    for call, message in ((lambda: my.experiment(good, start={gut: [1, 2]}), "'gut' has several values in start= of an"),
+    for call, message in ((lambda: my.experiment(good, start={gut: [1, 2]}), "'gut' has several values in start="),
                           (lambda: my.experiment(good, sweep={ka: np.nan}), "sweep= of 'ka' is nan"),
                           (lambda: my.experiment(good, sweep=3), "sweep is 3: give a dict"),
                           (lambda: my.priors.normal(1, 0), "deviation of a prior is 0: give a positive number"),

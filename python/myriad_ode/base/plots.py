@@ -251,7 +251,7 @@ def data_and_model(t: Any, data: Any, t_model: Any, model: Any, *, sigma: Any = 
     for beyond, marker in ((-1, "v"), (1, "^")):
         cut = side == beyond
         if cut.any():
-            axes.plot(t[cut], data[cut], marker=marker, markersize=5, markerfacecolor="none", **of)
+            axes.plot(t[cut], data[cut], marker=marker, markersize=6, markerfacecolor="none", **of)
     axes.set_xlabel("t" if xlabel is None else xlabel)
     axes.set_ylabel(ylabel)
     return axes

@@ -42,7 +42,7 @@ def _columns(components: Components, data: Any, what: str) -> dict[str, Array]:
     """Data by the names of components, times as "t"."""
     if not hasattr(data, "items"):
         raise Error(f"{what} is a {type(data).__name__}: give a dict or a data frame with times and values by name, "
-                    "as in {\"t\": times, x: values}, or a list of my.experiment(...)")
+                    "as in {\"t\": times, x: values}, or my.fit and my.likelihood a list of my.experiment(...)")
     columns: dict[str, Array] = {}
     for key, values in data.items():
         is_time = key is time or isinstance(key, str) and key in _time_names and key not in components.place

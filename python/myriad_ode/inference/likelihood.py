@@ -48,6 +48,16 @@ class _Measurements:
     def __post_init__(self) -> None:
         self.varies = (self.additive.free >= 0) | (self.relative.free >= 0) | (self.relative.number > 0)
 
+    @staticmethod
+    def joined(parts: Sequence[_Measurements]) -> _Measurements:
+        """Those of several experiments, with noise on the same scale."""
+        def of(name: str) -> Array:
+            return np.concatenate([getattr(part, name) for part in parts])
+
+        return _Measurements(parts[0].quantity, parts[0].scale, of("experiment"), of("place"), of("time"),
+                             of("measured"), of("side"), Given.joined([part.additive for part in parts]),
+                             Given.joined([part.relative for part in parts]))
+
     def deviation(self, sets: Array, mean: Array) -> tuple[Array, Array, Array, Array]:
         """The standard deviations about means, NaN where there is none, and their derivatives by the means and by both
         parts."""
@@ -184,7 +194,7 @@ class Likelihood(Objective):
         self._times = sample_times([np.unique(data.times) for data in self._data], self._begins, self._ends)
         of_all = {what: by_quantity(components, given, self._quantities, what)
                   for what, given in (("sigma", sigma), ("limits", limits))}
-        parts: dict[tuple[str, str], list[Any]] = {}
+        parts: dict[tuple[str, str], list[_Measurements]] = {}
         without = with_sigma = False
         self._is_likelihood = False
         for x, (e, data) in enumerate(zip(self._given, self._data)):
@@ -203,19 +213,17 @@ class Likelihood(Objective):
                     raise Error(f"'{name}' in experiment '{e.name}' has values that are not positive, and log-normal "
                                 "noise: give limits= if they are below a limit of quantification, or another noise "
                                 "model")
-                self._is_likelihood |= isinstance(spec, (str, NoiseModel)) or np.isfinite([low, high]).any()
-                parts.setdefault((name, scale), []).append(
-                    (np.full(rows.size, x), np.searchsorted(self._times[x], data.times[rows]), data.times[rows], values,
-                     side, additive, relative))
+                self._is_likelihood |= isinstance(spec, (str, NoiseModel)) or min(-low, high) < np.inf
+                parts.setdefault((name, scale), []).append(_Measurements(
+                    name, scale, np.full(rows.size, x), np.searchsorted(self._times[x], data.times[rows]),
+                    data.times[rows], values, side, additive, relative))
         if without and with_sigma:
             raise Error("sigma= is given for some data and not for others: give it for each quantity and experiment")
         if without and self._is_likelihood:
             raise Error("limits= need the deviations of the data: give sigma=, as numbers or as names in free=")
         self.has_sigma = not without
-        self._measurements = [_Measurements(name, scale, *(np.concatenate(column) for column in list(zip(*of))[:5]),
-                                            *(_joined(column) for column in list(zip(*of))[5:]))
-                              for (name, scale), of in sorted(parts.items(), key=lambda part: self._quantities.index(
-                                  part[0][0]))]
+        self._measurements = [_Measurements.joined(of) for _, of in sorted(
+            parts.items(), key=lambda part: self._quantities.index(part[0][0]))]
 
     def _noise(self, spec: Any, x: int, name: str) -> tuple[str, Given, Given]:
         """The scale and both parts of the deviations of a quantity in an experiment."""
@@ -225,8 +233,9 @@ class Likelihood(Objective):
             spec = NoiseModel(spec)
         if isinstance(spec, NoiseModel):
             called = f"sigma of '{name}'"
-            parts = (Given.of([self._resolved(part, x, called)] * count) for part in (spec.additive, spec.relative))
-            return (spec.scale, *parts)  # type: ignore[return-value]
+            additive, relative = (Given.of([self._resolved(part, x, called)] * count)
+                                  for part in (spec.additive, spec.relative))
+            return spec.scale, additive, relative
         numbers = np.ones(count) if spec is None else deviations(spec, data, name)
         none = np.full(count, -1)
         return "lin", Given(none, numbers), Given(none, np.zeros(count))
@@ -285,7 +294,8 @@ class Likelihood(Objective):
         return self._solve(np.atleast_2d(self._sets(values)), self._times, sensitivities)
 
     def _solve(self, sets: Array, times: Array, sensitivities: bool) -> Run:
-        count, samples = len(sets), {"times": np.tile(times, (len(sets), 1))}
+        count = len(sets)
+        samples: dict[str, Any] = {"times": np.tile(times, (count, 1))}
         if all(name in self._components.states for name in self._quantities):
             samples["states"] = self._quantities
         return self._forward.run(
@@ -342,6 +352,7 @@ class Likelihood(Objective):
         return found
 
     def why_none(self) -> str:
+        """Why there may be no loss, and what to do, where `evaluate` has found none at any start."""
         if not self._lost_to:
             return super().why_none()
         return (f"the likelihood of '{self._lost_to}' is zero at all starts, as where the model is zero or negative "
@@ -383,10 +394,6 @@ class Likelihood(Objective):
                     run._values_of(m.quantity)[x], t_label,
                     f"{m.quantity} ({units[m.quantity]})" if m.quantity in units else m.quantity))
         return found
-
-
-def _joined(parts: Sequence[Given]) -> Given:
-    return Given(np.concatenate([part.free for part in parts]), np.concatenate([part.number for part in parts]))
 
 
 def _limits(given: Any, name: str) -> tuple[float, float]:

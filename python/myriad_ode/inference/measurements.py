@@ -28,6 +28,10 @@ class Given:
     def of(resolved: Sequence[tuple[int, float]]) -> Given:
         return Given(np.array([k for k, _ in resolved], int), np.array([v for _, v in resolved], float))
 
+    @staticmethod
+    def joined(parts: Sequence[Given]) -> Given:
+        return Given(np.concatenate([part.free for part in parts]), np.concatenate([part.number for part in parts]))
+
     def values(self, sets: Array) -> Array:
         """The values for sets of the free components, [set, one of several]."""
         return np.where(self.free >= 0, sets[:, self.free], self.number)

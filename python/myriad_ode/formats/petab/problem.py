@@ -68,8 +68,8 @@ def read_petab(path: Path) -> PetabProblem:
 
     Several conditions, observables and noise by any formula with placeholders that measurements set, noise that is
     estimated, normally distributed on a linear or logarithmic scale, priors that are normal or Laplace's on some
-    scale, or uniform. Raises `my.Error` with table, row and column for what is not supported: preequilibration, steady states, noise
-    of Laplace's distribution; and for what petab itself finds wrong."""
+    scale, or uniform. Raises `my.Error` with table, row and column for what is not supported: preequilibration, steady
+    states, noise of Laplace's distribution; and for what petab itself finds wrong."""
     return _Reader(_read(path)).problem()
 
 
