@@ -181,13 +181,15 @@ class Fit(Generic[SomeObjective]):
 
     def plot(self, *, axes: Any = None, **style: Any) -> Any:
         """Draws a panel for each quantity in the data, into a new figure, or into as many `axes`: the data over the
-        best model, at times between those of the data too, each experiment in its colour. Triangles are values of which
-        only is known that they are below or above a limit. Further arguments go to matplotlib's `plot` of the model.
-        Returns the axes in an array."""
+        best model, at times between those of the data too, each experiment in its colour, with a legend of
+        up to 36. Triangles are values of which only is known that they are below or above a limit. Further arguments go
+        to matplotlib's `plot` of the model. Returns the axes in an array."""
         curves = self.problem.curves([self.best[name] for name in self.problem.names])
         names = list(dict.fromkeys(of.experiment for several in curves.values() for of in several))
+        columns = -(-len(names) // 9)  # so many are as high as a panel
+        has_legend = len(names) > 1 and columns <= 4
         if axes is None:
-            axes = plots.panels(len(curves), 1.2 if len(names) > 1 else 0.0)
+            axes = plots.panels(len(curves), 1.3 * columns if has_legend else 0.0)
         if np.size(axes) != len(curves):
             raise Error(f"there are {np.size(axes)} axes for {', '.join(curves)}: give one for each")
         colours = dict(zip(names, several_colours(len(names))))
@@ -197,10 +199,9 @@ class Fit(Generic[SomeObjective]):
                 plots.data_and_model(of.t_data, of.data, of.t, of.model, sigma=of.sigma, side=of.side,
                                      data_color=own.get("color", "black") if len(names) > 1 else "black",
                                      xlabel=of.t_label, ylabel=of.label, axes=into, **own)
-        if len(names) > 1:
+        if has_legend:
             lines = {line.get_label(): line for into in np.ravel(axes) for line in into.lines}
-            legend(np.ravel(axes)[-1], handles=[lines[name] for name in names if name in lines],
-                   ncols=-(-len(names) // 12))
+            legend(np.ravel(axes)[-1], handles=[lines[name] for name in names], ncols=columns)
         return np.ravel(axes)
 
     def run(self) -> Run:
