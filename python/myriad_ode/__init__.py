@@ -62,21 +62,13 @@ _public = ["CppModel", "Damage", "Error", "EventChoice", "Interrupted", "Options
            "load", "methods", "noise_models", "open_study", "plots", "priors", "read_antimony", "read_petab",
            "read_sbml", "read_xpp", "reduce", "solve", "status_names", "study", "verify",
            *(name for part in ("codegen.model", "dynamics.attractors", "dynamics.continuation", "dynamics.hysteresis",
-<<<<<<< HEAD
-                               "dynamics.steady_states", "gradients.batched", "inference.fitting",
-                               "inference.least_squares", "models.dose_table", "models.doses", "models.event",
-                               "models.sensitivities", "models.tangents", "models.trigger", "models.units",
-                               "results.exponents", "results.sensitivities", "sweeps.sweep", "symbolic.axes",
-                               "symbolic.distributions", "symbolic.expression", "symbolic.functions",
-                               "symbolic.interpolate", "symbolic.symbols", "symbolic.table")
-=======
                                "dynamics.steady_states", "gradients.batched", "inference.experiments",
-                               "inference.fitting", "inference.least_squares", "inference.likelihood", "models.event",
-                               "models.sensitivities", "models.tangents", "models.trigger", "models.units",
-                               "results.exponents", "results.sensitivities", "sweeps.sweep", "symbolic.axes",
+                               "inference.fitting", "inference.least_squares", "inference.likelihood",
+                               "models.dose_table", "models.doses", "models.event", "models.sensitivities",
+                               "models.tangents", "models.trigger", "models.units", "results.exponents",
+                               "results.sensitivities", "sweeps.sweep", "symbolic.axes", "symbolic.distributions",
                                "symbolic.expression", "symbolic.functions", "symbolic.interpolate",
                                "symbolic.symbols", "symbolic.table")
->>>>>>> experiments
              for name in _sys.modules[f"{__name__}.{part}"].__all__)]
 # What `from myriad_ode import *` brings: nothing that has the name of a function of Python's, such as abs.
 __all__ = [name for name in _public if not hasattr(_builtins, name)]
