@@ -649,7 +649,8 @@ def test_files_of_many_reactions_are_read_in_time_that_grows_as_they_do():
     def seconds(count):
         parts = [compartment("c"), parameter("k", 1.0)]
         for i in range(count):
-            parts += [species(f"s{i}", concentration=1.0), reaction(f"r{i}", f"s{i} -> s{(i + 1) % count}", f"k * s{i}")]
+            parts.append(species(f"s{i}", concentration=1.0))
+            parts.append(reaction(f"r{i}", f"s{i} -> s{(i + 1) % count}", f"k * s{i}"))
         text, taken = sbml_models.document(parts), []
         for _ in range(2):
             begin = time.process_time()
