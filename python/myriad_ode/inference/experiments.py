@@ -10,6 +10,7 @@ import numpy as np
 
 from ..base.errors import Error
 from ..models.components import by_component, name_of
+from ..models.dose_table import DoseTable
 from ..sweeps.inputs import by_name, real
 from ..symbolic.node import Node
 
@@ -77,7 +78,8 @@ def experiments_from_table(table: Any, *, id: str = "id", t: str = "t", value: s
                            sigma: str | None = None, begin: float | None = None,
                            limits: Any = None) -> list[Experiment]:
     """Experiments for `my.fit` from a long table, a row for each value: a data frame of pandas or polars, or a dict of
-    columns.
+    columns. Or from a table of doses, `my.dose_table(...)`, of whose observations `of` says what they are: each subject
+    is an experiment with its own doses, that of a model with these doses; of the other arguments it has `limits`.
 
     id           the column that tells experiments apart, whose cells are their names
     t, value     the columns of times, in any order, and of values; rows without a value are left out
@@ -89,6 +91,8 @@ def experiments_from_table(table: Any, *, id: str = "id", t: str = "t", value: s
     begin, limits  of all experiments, as in `my.experiment`
 
     Raises `Error` with the column, and the row or experiment, of what is wrong."""
+    if isinstance(table, DoseTable):
+        return _of_subjects(table, of, limits)
     columns = _Table(table)
     ids = columns.cells(id, "id=")
     times, values = columns.numbers(t, "t="), columns.numbers(value, "value=")
@@ -126,6 +130,22 @@ def experiments_from_table(table: Any, *, id: str = "id", t: str = "t", value: s
         found.append(Experiment(data, name, own["sweep"], own["start"], begin, spread or None, limits))
     if not found:
         raise Error("the table has no rows: give one for each value")
+    return found
+
+
+def _of_subjects(records: DoseTable, of: Component | None, limits: Any) -> list[Experiment]:
+    """The observations of a table of doses, by subject."""
+    if of is None:
+        raise Error("the observations of a table of doses have no name: give of=x if they are values of x")
+    found = []
+    for i, name in enumerate(records.ids):
+        there = ~np.isnan(records.observed[i])
+        if there.any():
+            data = {"t": records.observed_times[i][there], name_of(of): records.observed[i][there]}
+            own = {key: float(values[i]) for key, values in records.sweep.items()}
+            found.append(Experiment(data, _text(name), own, None, float(records.time[0][i]), None, limits))
+    if not found:
+        raise Error("the table of doses has no observations: give them in a column dv")
     return found
 
 
