@@ -205,6 +205,7 @@ def test_a_subject_may_have_no_dose():
 
 @pytest.mark.parametrize("columns, message", [
     (dict(amt=[1]), "no column 'time'"),
+    (dict(time=[], amt=[]), "no rows"),
     (dict(time=[0, 2, 1], amt=[1, 1, 1]), r"row 3 .* has the time 1.0 after 2.0: sort the rows"),
     (dict(time=[0], amt=["much"]), "row 1 .* has 'much' in the column 'amt'"),
     (dict(time=[0], amt=[1], ss=[1], ii=[12]), "a steady state: give the doses before it"),

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 __all__ = ["dose_table"]
 
+_Dose = tuple[float, float, float, float]
 _columns = ("id", "time", "amt", "evid", "cmt", "rate", "dur", "ii", "addl", "ss", "dv", "mdv")
 
 
@@ -131,47 +132,62 @@ def dose_table(data: Mapping[str, Any] | Path, into: Component | Mapping[Any, Co
     that parameters decide (below zero).
     """
     line, columns = users_line(), _read(data)
-    rows = len(next(iter(columns.values()), ()))
     for name in ("time", "amt"):
         if name not in columns:
             raise Error(f"the table of doses has no column '{name}'{at(line)}: it has {', '.join(columns) or 'none'}")
-    numbers = {name: _numbers(name, columns[name], line) for name in _columns if name not in ("id", "cmt")
-               and name in columns}
-    value = {name: numbers.get(name, np.full(rows, np.nan)) for name in _columns}
-    ids = list(columns.get("id", ["1"] * rows))
-    order = list(dict.fromkeys(ids))
-    states = dict(into) if isinstance(into, Mapping) else {None: into}
-    given: dict[Any, list[list[tuple[float, float, float, float]]]] = {key: [[] for _ in order] for key in states}
-    seen: list[list[tuple[float, float]]] = [[] for _ in order]
-    begin, end = np.full(len(order), np.inf), np.full(len(order), -np.inf)
-    for row in range(rows):
-        of_row = {name: float(of_column[row]) for name, of_column in value.items()}
-        where_it_is, subject = f"row {row + 1} of the table of doses{at(line)}", order.index(ids[row])
-        time = of_row["time"]
-        if not np.isfinite(time) or time < end[subject]:
-            raise Error(f"{where_it_is} has the time {time}{'' if np.isnan(time) else f' after {end[subject]}'}: sort "
-                        "the rows of each subject by time")
-        begin[subject], end[subject] = min(begin[subject], time), time
-        if _is_dose(of_row, where_it_is):
-            key = _key(columns["cmt"][row] if "cmt" in columns else None, states, where_it_is)
-            given[key][subject] += _doses_of(of_row, where_it_is)
-        elif of_row["evid"] != 2 and of_row["mdv"] != 1 and not np.isnan(of_row["dv"]):
-            seen[subject].append((time, of_row["dv"]))
-    parts = [TabledDoses(states[key], [_rows(several) for several in of_subjects], lag, bioavailability)
-             for key, of_subjects in given.items() if any(of_subjects)]
-    if any(part.is_infusion for part in parts) and not (isinstance(bioavailability, (int, float))
-                                                        and bioavailability == 1):
+    if not columns["time"]:
+        raise Error(f"the table of doses has no rows{at(line)}: give one for each dose or observation")
+    values = {name: _numbers(name, columns[name], line) for name in _columns[1:] if name in columns and name != "cmt"}
+    ids = columns.get("id", ["1"] * len(columns["time"]))
+    rows = _Rows(ids, dict(into) if isinstance(into, Mapping) else {None: into})
+    for i, subject in enumerate(ids):
+        row = {name: float(values[name][i]) if name in values else np.nan for name in _columns[1:]}
+        rows.add(subject, row, columns["cmt"][i] if "cmt" in columns else None,
+                 f"row {i + 1} of the table of doses{at(line)}")
+    made = DoseTable([TabledDoses(rows.states[key], [_rows_of(several) for several in of_subjects.values()], lag,
+                                  bioavailability)
+                      for key, of_subjects in rows.given.items() if any(of_subjects.values())])
+    if any(part.is_infusion for part in made.parts) and not (isinstance(bioavailability, (int, float))
+                                                             and bioavailability == 1):
         raise Error(f"a table with infusions has the bioavailability {bioavailability!r}{at(line)}, which would change "
                     "how long they take: write my.doses for each")
-    made = DoseTable(parts)
-    made.ids, made.time = order, (begin, end)
-    made.covariates = {name: _constant(name, of_column, ids, order, line) for name, of_column in columns.items()
+    made.ids, made.time = list(rows.begin), (np.array([*rows.begin.values()]), np.array([*rows.end.values()]))
+    made.covariates = {name: _constant(name, of_column, ids, line) for name, of_column in columns.items()
                        if name not in _columns}
-    most = max(map(len, seen), default=0)
-    padded = np.array([[*several, *[(np.nan, np.nan)] * (most - len(several))] for several in seen]
-                      ).reshape(len(order), most, 2)
-    made.observed_times, made.observed = padded[..., 0], padded[..., 1]
+    made.observed_times, made.observed = rows.observed()
     return made
+
+
+class _Rows:
+    """What the rows of a table say of each subject, in the order in which subjects come."""
+
+    def __init__(self, ids: list[Any], states: dict[Any, Any]) -> None:
+        order = dict.fromkeys(ids)
+        self.states = states  #: by key
+        #: begin, end, amount at once and rate of the doses, by key of the state and subject
+        self.given: dict[Any, dict[Any, list[_Dose]]] = {key: {one: [] for one in order} for key in states}
+        self.seen: dict[Any, list[tuple[float, float]]] = {one: [] for one in order}
+        self.begin: dict[Any, float] = dict.fromkeys(order, np.inf)
+        self.end: dict[Any, float] = dict.fromkeys(order, -np.inf)
+
+    def add(self, subject: Any, row: Mapping[str, float], compartment: Any, where_it_is: str) -> None:
+        """Takes a row, or refuses it."""
+        time, last = row["time"], self.end[subject]
+        if not np.isfinite(time) or time < last:
+            raise Error(f"{where_it_is} has the time {time}{'' if np.isnan(time) else f' after {last}'}: sort the rows "
+                        "of each subject by time")
+        self.begin[subject], self.end[subject] = min(self.begin[subject], time), time
+        if _is_dose(row, where_it_is):
+            self.given[_key(compartment, self.states, where_it_is)][subject] += _doses_of(row, where_it_is)
+        elif row["evid"] != 2 and row["mdv"] != 1 and not np.isnan(row["dv"]):
+            self.seen[subject].append((time, row["dv"]))
+
+    def observed(self) -> tuple[Array, Array]:
+        """Times and values of the observations, a row for each subject."""
+        most = max(map(len, self.seen.values()))
+        padded = np.array([[*several, *[(np.nan, np.nan)] * (most - len(several))] for several in self.seen.values()]
+                          ).reshape(len(self.seen), most, 2)
+        return padded[..., 0], padded[..., 1]
 
 
 def _read(data: Any) -> dict[str, list[Any]]:
@@ -222,7 +238,7 @@ def _key(given: Any, states: Mapping[Any, Any], where_it_is: str) -> Any:
     raise Error(f"{where_it_is} has cmt {given!r}: `into` has {', '.join(map(repr, states))}")
 
 
-def _doses_of(row: Mapping[str, float], where_it_is: str) -> list[tuple[float, float, float, float]]:
+def _doses_of(row: Mapping[str, float], where_it_is: str) -> list[_Dose]:
     """Begin, end, amount at once and rate of the doses of a row."""
     rate, duration, more, interval = (0.0 if np.isnan(row[name]) else row[name]
                                       for name in ("rate", "dur", "addl", "ii"))
@@ -242,7 +258,7 @@ def _doses_of(row: Mapping[str, float], where_it_is: str) -> list[tuple[float, f
     return [(begin, begin + length, 0.0 if length > 0 else row["amt"], rate) for begin in begins]
 
 
-def _rows(several: list[tuple[float, float, float, float]]) -> Array:
+def _rows_of(several: list[_Dose]) -> Array:
     """The rows of a subject: times, amounts, and rates from then on."""
     happening = sorted([(begin, amount) for begin, _, amount, _ in several]
                        + [(end, 0.0) for _, end, _, rate in several if rate > 0], key=lambda one: one[0])
@@ -250,15 +266,14 @@ def _rows(several: list[tuple[float, float, float, float]]) -> Array:
                        for time, amount in happening), (0.0, 0.0, 0.0)])
 
 
-def _constant(name: str, given: list[Any], ids: list[Any], order: list[Any], line: tuple[str, int] | None) -> Array:
+def _constant(name: str, given: list[Any], ids: list[Any], line: tuple[str, int] | None) -> Array:
     """A covariate of each subject."""
-    numbers, of_rows = _numbers(name, given, line), np.array([order.index(one) for one in ids])
-    made = np.full(len(order), np.nan)
-    for subject, number in zip(of_rows, numbers):
+    made: dict[Any, float] = dict.fromkeys(ids, np.nan)
+    for subject, number in zip(ids, _numbers(name, given, line)):
         if np.isnan(made[subject]):
-            made[subject] = number
+            made[subject] = float(number)
         elif number != made[subject] and not np.isnan(number):
-            raise Error(f"the column '{name}' of the table of doses{at(line)} changes within the subject "
-                        f"{order[subject]!r}, from {made[subject]:g} to {number:g}: leave it out, and interpolate it "
-                        "in the model by my.interpolate")
-    return made
+            raise Error(f"the column '{name}' of the table of doses{at(line)} changes within the subject {subject!r}, "
+                        f"from {made[subject]:g} to {number:g}: leave it out, and interpolate it in the model by "
+                        "my.interpolate")
+    return np.array([*made.values()])
