@@ -8,7 +8,9 @@ list(REMOVE_ITEM sources "${PROJECT_SOURCE_DIR}/src/program/threads.cpp")
 add_library(myriad_program STATIC ${sources})
 myriad_add_compile_sources(myriad_program)
 add_library(myriad::program ALIAS myriad_program)
-set_target_properties(myriad_program PROPERTIES EXPORT_NAME program)
+# Compiled together, as the parts of the host side are, but for `main`, which programs may have of their own.
+set_property(SOURCE "${PROJECT_SOURCE_DIR}/src/program/main.cpp" PROPERTY SKIP_UNITY_BUILD_INCLUSION ON)
+set_target_properties(myriad_program PROPERTIES EXPORT_NAME program UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0)
 target_include_directories(myriad_program PRIVATE "${PROJECT_SOURCE_DIR}/src")
 target_include_directories(myriad_program SYSTEM PRIVATE "${MYRIAD_TOMLPLUSPLUS_INCLUDE_DIR}")
 # From the program's folder: the same in the build and where it is installed.

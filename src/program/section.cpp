@@ -69,7 +69,7 @@ std::optional<double> multiple_of_pi(std::string_view text) {
     return product;
 }
 
-std::string quoted(std::string_view text) { return message('"', text, '"'); }
+std::string in_quotes(std::string_view text) { return message('"', text, '"'); }
 
 using enum host::cures;
 /// What study files have other words for than C++.
@@ -111,7 +111,7 @@ std::string suggestion(std::string_view name, const std::vector<std::string>& ch
 std::string in_words_of_files(const statement& said, const std::vector<std::string>& events) {
     return said.text([&](const statement_part& p) {
         if (p.kind == part_kind::event && std::cmp_less(p.number, events.size()))
-            return message("event ", quoted(events[static_cast<std::size_t>(p.number)]));
+            return message("event ", in_quotes(events[static_cast<std::size_t>(p.number)]));
         if (p.kind == part_kind::cure)
             for (const auto& [known, words] : cures_in_files)
                 if (p.key == host::row_of(known).name) return std::string(words);
@@ -139,7 +139,7 @@ double number_in(const toml_value& v, std::string_view key) {
     if (const auto* const text = v.as<std::string>()) {
         if (const std::optional<double> n = multiple_of_pi(*text)) return *n;
         throw wrong(v, key,
-                    message("must be a number, and is the string ", quoted(*text),
+                    message("must be a number, and is the string ", in_quotes(*text),
                             ": write 1.5, or a multiple of pi as \"2 pi\""));
     }
     throw wrong(v, key, message("must be a number, and is ", v.kind()));
