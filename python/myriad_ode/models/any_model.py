@@ -55,6 +55,7 @@ class AnyModel(ComponentNames):
     aliases: Mapping[str, str] = {}  # components by other names
     outputs: Mapping[str, Any] = {}  # what a run computes from its results, as expressions
     constants: Mapping[Any, Any] = {}  # values of symbols in outputs that are no components
+    conserved: Mapping[str, str] = {}  # by state, a parameter: a sum with it, from which what is left out follows
     units: Mapping[str, str] = {}  # texts by component or output
     time_unit = ""
 
