@@ -186,8 +186,8 @@ def test_species_of_a_conserved_sum_get_no_doses():
     (lambda: drug.with_doses(my.doses(gut, 1, at=gut)), "depend on gut: they are made of parameters"),
     (lambda: drug.with_doses(my.doses(gut, blood, duration=2)), "depend on blood: they are made of parameters"),
     (lambda: drug.with_doses(my.doses(gut, "amount")), r"amount of doses \([^(]*\): 'amount' is unknown"),
-    (lambda: my.CppModel("struct m {};", "m", "x").with_doses(my.doses("x", 1)), "no recorded one"),
-    (lambda: my.with_sensitivities(drug, [absorption]).with_doses(my.doses(gut, 1)), "no recorded one"),
+    (lambda: my.CppModel("struct m {};", "m", "x").with_doses(my.doses("x", 1)), "is not recorded"),
+    (lambda: my.with_sensitivities(drug, [absorption]).with_doses(my.doses(gut, 1)), "is not recorded"),
 ])
 def test_what_does_not_fit_is_refused(wrong, message):
     with pytest.raises(my.Error, match=message):
@@ -291,6 +291,13 @@ def test_missing_values_of_pandas_are_missing():
     records = my.dose_table(table, gut)
     assert records.observed.tolist() == [[2.0]]
     np.testing.assert_allclose(solved(drug.with_doses(records), records.sweep)[blood], swallowed([0], [5]), rtol=1e-8)
+
+
+def test_the_doses_of_a_table_are_counted_by_a_letter_that_no_component_has():
+    n = my.state("n")
+    model = my.model({n: -n}).with_doses(my.dose_table(dict(time=[0], amt=[10]), n))
+    stop = next(line for line in model.latex().split("\n") if "stop" in line)
+    assert "+ i < " in stop and r", \; i = 0, 1, \ldots \; \Rightarrow \; n \leftarrow n + " in stop
 
 
 def test_tables_with_other_rows_need_no_other_kernel():

@@ -84,9 +84,9 @@ class AnyModel(ComponentNames):
         return ()
 
     def with_doses(self, *several: Any) -> AnyModel:
-        """The model whose states get these doses; here a refusal, of a model that is not recorded."""
-        raise Error(f"the model {self.name} is no recorded one, to which doses can be added{at(users_line())}: add "
-                    "them to the model that it is made of, or write them as stops")
+        """The model whose states get these doses; refused here, as the model is not recorded."""
+        raise Error(f"the model {self.name} is not recorded, and gets no doses{at(users_line())}: add them to the "
+                    "model that it is made of, or write stops in C++")
 
     def cpp(self) -> str:
         """The model as the text of a C++ header."""

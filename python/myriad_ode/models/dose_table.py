@@ -18,6 +18,7 @@ from ..symbolic.expression import make, to_real
 from ..symbolic.folding import add, constant, multiply
 from ..symbolic.functions import where
 from ..symbolic.table import Table
+from .components import name_of
 from .event import Stop
 
 if TYPE_CHECKING:
@@ -30,17 +31,13 @@ subject = sym.parameter("subject")
 _columns = ("id", "time", "amt", "evid", "cmt", "rate", "dur", "ii", "addl", "ss", "dv", "mdv")
 
 
-def _name_of(state: Any) -> str:
-    return str(getattr(state, "value", (None, state))[1])
-
-
 class TabledDoses:
     """What one state gets by a table. Its rows are time, amount, and rate of infusions from then on; those of one
     subject follow each other."""
 
     def __init__(self, into: Any, of_subjects: list[Array], lag: Any, bioavailability: Any) -> None:
         self.into, self.lag, self.bioavailability, self.line = into, lag, bioavailability, users_line()
-        name = _name_of(into)
+        name = name_of(into)
         lengths = [len(rows) for rows in of_subjects]
         rows = _padded(np.concatenate(of_subjects), 0.0)
         self.table = Table(sym.check_name(f"{name}_doses", "a table"), rows)
@@ -127,7 +124,7 @@ class DoseTable:
         self.sweep = {subject: np.arange(len(ids), dtype=float)} if parts else {}
 
     def __repr__(self) -> str:
-        states = " and ".join(_name_of(part.into) for part in self.parts) or "no state"
+        states = " and ".join(name_of(part.into) for part in self.parts) or "no state"
         return f"doses into {states} of {len(self.ids)} subjects"
 
 
@@ -163,7 +160,7 @@ def dose_table(data: Mapping[str, Any] | Path, into: Component | Mapping[Any, Co
     value = {name: numbers.get(name, np.full(rows, np.nan)).tolist() for name in _columns}
     ids = columns.get("id", ["1"] * rows)
     number_of = {one: number for number, one in enumerate(dict.fromkeys(ids))}
-    targets = {_name_of(state): state for state in states.values()}
+    targets = {name_of(state): state for state in states.values()}
     given: dict[str, list[list[tuple[float, float, float, float]]]] = {name: [[] for _ in number_of]
                                                                        for name in targets}
     seen: list[list[tuple[float, float]]] = [[] for _ in number_of]
@@ -181,7 +178,7 @@ def dose_table(data: Mapping[str, Any] | Path, into: Component | Mapping[Any, Co
         begin[number], end[number] = min(begin[number], time), time
         if _is_dose(of_row, where_it_is):
             state = _state_of(columns["cmt"][row] if "cmt" in columns else None, states, where_it_is)
-            given[_name_of(state)][number] += _doses_of(of_row, where_it_is)
+            given[name_of(state)][number] += _doses_of(of_row, where_it_is)
         elif of_row["evid"] != 2 and of_row["mdv"] != 1 and not np.isnan(of_row["dv"]):
             seen[number].append((time, of_row["dv"]))
     parts = [TabledDoses(targets[name], [_rows(several) for several in of_subjects], lag, bioavailability)

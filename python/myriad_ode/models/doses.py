@@ -15,6 +15,7 @@ from ..symbolic.expression import constant, floor
 from ..symbolic.folding import add, divide, is_constant, multiply, subtract
 from ..symbolic.functions import maximum, minimum, where
 from ..symbolic.numbers import is_whole
+from .components import name_of
 from .event import Stop, stop
 
 if TYPE_CHECKING:
@@ -39,7 +40,7 @@ class Doses:
         self.line = users_line()
 
     def __repr__(self) -> str:
-        return f"doses into {getattr(self.into, 'value', (0, self.into))[1]} at {self.times!r}"
+        return f"doses into {name_of(self.into)} at {self.times!r}"
 
     def read(self, expression: Callable[[Any, str], Any]) -> Doses:
         """The same with expressions in place of texts and numbers."""

@@ -19,6 +19,7 @@ from ..symbolic.node import Node, symbols_of, text, walk
 from ..symbolic.table import tables_of
 from ..symbolic.whole_and_real import generic_problem
 from .any_model import AnyModel, names_of
+from .components import name_of
 from .dose_table import DoseTable
 from .doses import Doses
 from .event import Event, Stop, stop
@@ -195,9 +196,9 @@ class RecordedModel(AnyModel):
         stops = []
         for one in [part for table in several for part in table.parts]:
             reader.line = one.line
-            into = self.aliases.get(one.into, one.into)
-            target = sym.symbol("state", into) if isinstance(into, str) else reader.target(into, "doses")
-            shares = self._shares(target, one.line)
+            given_name = name_of(one.into)
+            target = sym.symbol("state", self.aliases.get(given_name, given_name))
+            shares = self._shares(target.value[1], one.line)
             one = one.read(reader.expression)
             for symbol in symbols_of(one.values):
                 kind, name = symbol.value
@@ -219,10 +220,9 @@ class RecordedModel(AnyModel):
         made._check()
         return made
 
-    def _shares(self, target: Node, line: tuple[str, int] | None) -> list[float]:
+    def _shares(self, name: str, line: tuple[str, int] | None) -> list[float]:
         """What of an inflow into a state each equation gets: the state's column of the mass matrix. Refuses doses into
         what is no state, or one that follows from others or that others follow from."""
-        name = target.value[1]
         mass = np.eye(len(self.states)) if self.mass_matrix is None else self.mass_matrix
         columns = {state: column for state, column in zip(self.states, mass.T.tolist()) if any(column)}
         if name not in columns:
