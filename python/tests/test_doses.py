@@ -69,6 +69,11 @@ def test_times_may_be_a_range():
     np.testing.assert_allclose(run[blood], swallowed([0, 6, 12, 18], [5] * 4), rtol=1e-8)
 
 
+def test_a_number_of_doses_may_be_a_quotient():
+    run = solved(drug.with_doses(my.doses(gut, 5, every=6, count=24 / 6)), {}, size=1)
+    np.testing.assert_allclose(run[blood], swallowed([0, 6, 12, 18], [5] * 4), rtol=1e-8)
+
+
 def test_infusions_may_overlap():
     run = solved(drug.with_doses(my.doses(blood, dose, every=5, count=4, duration=length)),
                  {dose: 60.0, length: [2.0, 5.0, 12.0]})

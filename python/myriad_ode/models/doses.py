@@ -14,7 +14,6 @@ from ..symbolic import symbols as sym
 from ..symbolic.expression import constant, floor
 from ..symbolic.folding import add, divide, is_constant, multiply, subtract
 from ..symbolic.functions import maximum, minimum, where
-from ..symbolic.numbers import is_whole
 from .components import name_of
 from .event import Stop, stop
 
@@ -161,7 +160,7 @@ def doses(into: Component, amount: Written | Sequence[Written], *, at: Written |
     for name, value, otherwise in (("every", every, ""), ("rate", rate, _at_once), ("duration", duration, _at_once)):
         if isinstance(value, _numbers) and not value > 0:
             raise Error(f"doses have {name}={value!r}{written_at(line)}: give a number above zero{otherwise}")
-    if isinstance(count, _numbers) and not is_whole(count, 0):
+    if isinstance(count, _numbers) and not (count >= 0 and float(count).is_integer()):
         raise Error(f"doses have count={count!r}{written_at(line)}: give a whole number, or leave it out for doses "
                     "without an end")
     if rate is not None and duration is not None:
