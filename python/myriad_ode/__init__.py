@@ -19,9 +19,11 @@ from .formats.petab.problem import PetabProblem as PetabProblem, read_petab as r
 from .formats.sbml.model import SbmlModel as SbmlModel, read_antimony as read_antimony, read_sbml as read_sbml
 from .formats.xpp.model import XppModel as XppModel, read_xpp as read_xpp
 from .gradients.batched import *  # noqa: F403
-from .inference import designs as designs
+from .inference import designs as designs, noise_models as noise_models, priors as priors
+from .inference.experiments import *  # noqa: F403
 from .inference.fitting import *  # noqa: F403
 from .inference.least_squares import *  # noqa: F403
+from .inference.likelihood import *  # noqa: F403
 from .kernels import cache as cache
 from .models.cpp_model import CppModel as CppModel
 from .models.dose_table import *  # noqa: F403
@@ -46,6 +48,7 @@ from .studies.study import Study as Study, study as study
 from .sweeps.sweep import *  # noqa: F403
 from .symbolic import numpy_functions as numpy_functions
 from .symbolic.axes import *  # noqa: F403
+from .symbolic.distributions import *  # noqa: F403
 from .symbolic.expression import *  # noqa: F403
 from .symbolic.functions import *  # noqa: F403
 from .symbolic.interpolate import *  # noqa: F403
@@ -56,15 +59,16 @@ __version__ = _core.version
 
 _public = ["CppModel", "Damage", "Error", "EventChoice", "Interrupted", "Options", "PetabProblem", "RecordChoice",
            "Run", "SampleChoice", "SbmlModel", "Study", "StudyResult", "XppModel", "cache", "controls", "designs",
-           "load", "methods", "open_study", "plots", "read_antimony", "read_petab", "read_sbml", "read_xpp", "reduce",
-           "solve", "status_names", "study", "verify",
+           "load", "methods", "noise_models", "open_study", "plots", "priors", "read_antimony", "read_petab",
+           "read_sbml", "read_xpp", "reduce", "solve", "status_names", "study", "verify",
            *(name for part in ("codegen.model", "dynamics.attractors", "dynamics.continuation", "dynamics.hysteresis",
-                               "dynamics.steady_states", "gradients.batched", "inference.fitting",
-                               "inference.least_squares", "models.dose_table", "models.doses", "models.event",
-                               "models.sensitivities", "models.tangents", "models.trigger", "models.units",
-                               "results.exponents", "results.sensitivities", "sweeps.sweep", "symbolic.axes",
-                               "symbolic.expression", "symbolic.functions", "symbolic.interpolate", "symbolic.symbols",
-                               "symbolic.table")
+                               "dynamics.steady_states", "gradients.batched", "inference.experiments",
+                               "inference.fitting", "inference.least_squares", "inference.likelihood",
+                               "models.dose_table", "models.doses", "models.event", "models.sensitivities",
+                               "models.tangents", "models.trigger", "models.units", "results.exponents",
+                               "results.sensitivities", "sweeps.sweep", "symbolic.axes", "symbolic.distributions",
+                               "symbolic.expression", "symbolic.functions", "symbolic.interpolate",
+                               "symbolic.symbols", "symbolic.table")
              for name in _sys.modules[f"{__name__}.{part}"].__all__)]
 # What `from myriad_ode import *` brings: nothing that has the name of a function of Python's, such as abs.
 __all__ = [name for name in _public if not hasattr(_builtins, name)]

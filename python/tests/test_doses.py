@@ -362,3 +362,32 @@ def test_a_table_needs_states(into):
 def test_a_table_with_infusions_has_no_bioavailability():
     with pytest.raises(my.Error, match="has the bioavailability"):
         my.dose_table(dict(time=[0], amt=[1], dur=[1]), gut, bioavailability=part)
+
+
+def test_the_observations_of_a_table_are_fitted_with_the_doses_of_each_subject():
+    times, generator = np.array([1.0, 3.0, 8.0, 13.0, 20.0, 30.0]), np.random.default_rng(1)
+    rows = {name: [] for name in ("id", "time", "amt", "cmt", "rate", "dv")}
+    for subject, (amounts, rate) in enumerate((([100.0, 50.0], 0.0), ([80.0, 80.0], 20.0), ([30.0, 60.0], 0.0))):
+        given = sorted([(at, amount, np.nan) for at, amount in zip((0.0, 12.0), amounts)] +
+                       [(at, np.nan, True) for at in times], key=lambda row: row[0])
+        for at, amount, seen in given:
+            value = sum(infused(np.array([t]), np.array([t + a / rate]), rate, at) if rate else swallowed([t], [a], at)
+                        for t, a in zip((0.0, 12.0), amounts) if t < at)
+            dv = value * np.exp(0.01 * generator.standard_normal()) if seen is True else np.nan
+            row = (f"S{subject}", at, amount, 2 if rate else 1, rate if amount > 0 else np.nan, dv)
+            for name, cell in zip(rows, row):
+                rows[name].append(cell)
+    records = my.dose_table(rows, {1: gut, 2: blood})
+    experiments = my.experiments_from_table(records, of=blood)
+    fit = my.fit(drug.with_doses(records), experiments, start={gut: 0, blood: 0}, starts=8, seed=1,
+                 free={absorption: (0.1, 10, "log"), elimination: (0.01, 1, "log")},
+                 sigma=my.noise_models.proportional(0.01))
+    np.testing.assert_allclose([fit.best["absorption"], fit.best["elimination"]], [1.0, 0.2], rtol=0.02)
+
+
+def test_observations_of_a_table_need_a_name():
+    records = my.dose_table(subjects, {1: gut, 2: blood})
+    with pytest.raises(my.Error, match="give of=x"):
+        my.experiments_from_table(records)
+    with pytest.raises(my.Error, match="no observations.*in a column dv"):
+        my.experiments_from_table(my.dose_table(dict(time=[0], amt=[1]), gut), of=blood)

@@ -259,6 +259,9 @@ logged       A                 1e9"""))
     ("normal", "0.9;0.2", lambda stats, k: stats.norm.logpdf(k, 0.9, 0.2)),
     ("parameterScaleNormal", "-0.1;0.05", lambda stats, k: stats.norm.logpdf(np.log10(k), -0.1, 0.05)),
     ("logNormal", "-0.2;0.3", lambda stats, k: stats.norm.logpdf(np.log(k), -0.2, 0.3) - np.log(k)),
+    ("laplace", "0.9;0.2", lambda stats, k: stats.laplace.logpdf(k, 0.9, 0.2)),
+    ("parameterScaleLaplace", "-0.1;0.05", lambda stats, k: stats.laplace.logpdf(np.log10(k), -0.1, 0.05)),
+    ("logLaplace", "-0.2;0.3", lambda stats, k: stats.laplace.logpdf(np.log(k), -0.2, 0.3) - np.log(k)),
 ])
 def test_a_prior_adds_the_logarithm_of_its_density(tmp_path, kind, parameters, density):
     stats = pytest.importorskip("scipy.stats")
@@ -342,8 +345,6 @@ def with_column(name, values):
     ({"observables": table("""observableId observableFormula noiseFormula noiseDistribution
 seen scale*A noiseParameter1_seen normal
 logged log(A) 0.02 laplace""")}, "the observable table, row 'logged', column noiseDistribution: laplace"),
-    ({"parameters": PARAMETERS.replace("0.5\t1\n", "0.5\t1\tlaplace\t1;2\n")},
-     "the table of parameters, row 'k', column objectivePriorType: laplace"),
     ({"conditions": table("conditionId A k\nusual 3 2")}, "'k'"),
     ({"conditions": table("conditionId A b\nusual 3 0.3")}, "'b'"),
     ({"conditions": table("conditionId A\nusual unknown")}, "unknown"),

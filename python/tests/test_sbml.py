@@ -5,6 +5,7 @@ import argparse
 import importlib.util
 import pathlib
 import sys
+import time
 
 import numpy as np
 import pytest
@@ -642,3 +643,20 @@ def test_triggers_by_functions_that_call_twice_are_read_in_no_time():
         '</model></sbml>')
     run = my.solve(model, {}, time=(0, 3), interpreted=True)
     np.testing.assert_allclose(run["y"], 0, atol=1e-9)  # -1 at 1/2 and at 2
+
+
+def test_files_of_many_reactions_are_read_in_time_that_grows_as_they_do():
+    def seconds(count):
+        parts = [compartment("c"), parameter("k", 1.0)]
+        for i in range(count):
+            parts.append(species(f"s{i}", concentration=1.0))
+            parts.append(reaction(f"r{i}", f"s{i} -> s{(i + 1) % count}", f"k * s{i}"))
+        text, taken = sbml_models.document(parts), []
+        for _ in range(2):
+            begin = time.process_time()
+            my.read_sbml(text)
+            taken.append(time.process_time() - begin)
+        return min(taken)
+
+    seconds(50)
+    assert seconds(1200) < 25 * seconds(120)  # 12 to 14, and 49 where each species looked at all reactions

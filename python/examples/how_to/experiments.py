@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Rates that hold in several experiments, fitted to the data of all of them at once."""
+"""Rates that hold in several experiments, and rates of each patient, fitted to the data of all of them at once."""
 
 import numpy as np
 
@@ -11,41 +11,47 @@ absorption, elimination = my.parameters("absorption elimination")
 drug = my.model({gut: -absorption * gut, blood: absorption * gut - elimination * blood}, name="drug")
 # end of snippet
 
-# snippet: experiments
-times, doses = np.array([0.5, 1, 2, 4, 8, 12, 24]), np.array([25.0, 50.0, 100.0])  # an experiment for each dose
-simulate = my.batched(drug, free=[absorption, elimination, gut], of=blood, start={blood: 0}, time=(0, 24),
-                      samples=times)
+random = np.random.default_rng(1)
 
 
-def sets(rates):
-    """The values of `free` in rows, one for each experiment: rates that all have, and what differs."""
-    return np.column_stack([np.tile(rates, (doses.size, 1)), doses])
-# end of snippet
+def measured(dose, rate, hours):
+    run = my.solve(drug, {absorption: 1.2, elimination: rate}, start={gut: dose, blood: 0}, time=(0, hours[-1]),
+                   samples=hours)
+    return run[blood][0] * (1 + 0.05 * random.standard_normal(len(hours)))
 
 
-true = np.array([1.2, 0.15])
-data = simulate(sets(true))[:, :, 0] + np.random.default_rng(1).normal(0, 0.2, (doses.size, times.size))
-data[0, 5:] = np.nan  # the first experiment was shorter
+hours = np.array([0.5, 1, 2, 4, 8, 12, 24])
+data = {25: (hours[:5], measured(25, 0.15, hours[:5])), 50: (hours, measured(50, 0.15, hours)),
+        100: (hours, measured(100, 0.15, hours))}
 
 # snippet: fit
-from scipy import optimize  # noqa: E402
-
-there = np.isfinite(data)  # data[experiment, time], NaN where nothing was measured
-
-
-def residuals(rates):
-    return (simulate(sets(rates))[:, :, 0] - data)[there]
-
-
-def jacobian(rates):
-    slopes = simulate.with_jacobian(sets(rates))[1]  # [experiment, time, quantity, component of free]
-    return slopes[:, :, 0, :2][there]
-
-
-found = optimize.least_squares(residuals, [0.5, 0.5], jacobian, bounds=(0.01, 10))
-print(found.x)
+experiments = [my.experiment({"t": times, blood: levels}, start={gut: dose}, name=f"{dose} mg")
+               for dose, (times, levels) in data.items()]
+fit = my.fit(drug, experiments, start={blood: 0},
+             free={absorption: (0.1, 10, "log"), elimination: (0.01, 1, "log")})
+print(fit)
+fit.plot()[0].figure.savefig("experiments.png")
 # end of snippet
 
-np.testing.assert_allclose(found.x, true, rtol=0.05)
-errors = np.sqrt(np.diag(np.linalg.inv(found.jac.T @ found.jac))) * 0.2
-assert (abs(found.x - true) < 4 * errors).all()
+for name, true in (("absorption", 1.2), ("elimination", 0.15)):
+    assert abs(fit.best[name] - true) < 4 * fit.standard_errors[name]
+
+rates = {"P1": 0.1, "P2": 0.15, "P3": 0.25, "P4": 0.4}
+table = {"patient": np.repeat(list(rates), hours.size), "hours": np.tile(hours, len(rates)),
+         "dose": np.repeat([50, 50, 100, 100], hours.size),
+         "level": np.concatenate([measured(d, r, hours) for d, r in zip([50, 50, 100, 100], rates.values())])}
+table["level"] = np.maximum(table["level"], 1.0)
+
+# snippet: table
+patients = my.experiments_from_table(table, id="patient", t="hours", value="level", of=blood, start={gut: "dose"})
+fit = my.fit(drug, patients, start={blood: 0}, own=elimination, sigma=my.noise_models.proportional("error"),
+             limits={blood: (1.0, None)}, priors={absorption: my.priors.log_normal(1.0, 0.5)},
+             free={absorption: (0.1, 10, "log"), elimination: (0.01, 1, "log"), "error": (0.01, 1, "log")})
+print(fit)
+fit.plot()[0].figure.savefig("patients.png")
+# end of snippet
+
+assert fit.best["error"] < 0.1 and (table["level"] == 1.0).sum() > 1
+for name, true in rates.items():
+    of = f"elimination[{name}]"
+    assert abs(fit.best[of] - true) < 4 * fit.standard_errors[of]

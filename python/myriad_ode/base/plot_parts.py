@@ -21,6 +21,14 @@ colours = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#F
 _colour_of_others = "0.6"
 
 
+def several_colours(count: int) -> list[Any]:
+    """So many colours that can be told apart on white; from a scale, if there are many."""
+    if count <= 6:
+        return list(colours[:6][:count])
+    from matplotlib import colormaps
+    return [colormaps["viridis"](place) for place in np.linspace(0, 0.92, count)]
+
+
 def axes_of(axes: Axes | None, **figure: Any) -> Any:
     """The given axes, or those of a new figure."""
     try:

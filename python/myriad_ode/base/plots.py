@@ -216,30 +216,41 @@ def statuses(status: Any, names: Sequence[str] = (), *, axes: Axes | None = None
     return axes
 
 
-def panels(count: int) -> Any:
-    """The axes of a new figure of so many panels, at most four in a row."""
+def panels(count: int, beside: float = 0.0) -> Any:
+    """The axes of a new figure of so many panels, at most four in a row, and room for what is `beside` them, in
+    inches."""
     down = -(-count // 4)
     across = -(-count // down)
-    shown = axes_of(None, figsize=(2.4 * across, 2.2 * down), nrows=down, ncols=across, squeeze=False).ravel()
+    size = (4.2, 3.0) if count == 1 else (2.4 * across, 2.2 * down)
+    shown = axes_of(None, figsize=(size[0] + beside, size[1]), nrows=down, ncols=across, squeeze=False).ravel()
     for spare in shown[count:]:
         spare.remove()
     return shown[:count]
 
 
-def data_and_model(t: Any, data: Any, t_model: Any, model: Any, *, sigma: Any = None, xlabel: str | None = None,
-                   ylabel: str | None = None, axes: Axes | None = None, **style: Any) -> Any:
+def data_and_model(t: Any, data: Any, t_model: Any, model: Any, *, sigma: Any = None, side: Any = None,
+                   data_color: Any = "black", xlabel: str | None = None, ylabel: str | None = None,
+                   axes: Axes | None = None, **style: Any) -> Any:
     """Data over a model: points at times t, with `sigma` as error bars, before the line of the model at times t_model,
-    which may be many more. Further arguments go to matplotlib's `plot` of the line."""
+    which may be many more. Where `side` is not 0, data are limits, and values below (-1) or above (1): triangles that
+    point there. Further arguments go to matplotlib's `plot` of the line."""
     ylabel = label_of(data, ylabel)
     t, data = numbers(t, "t", (1,)), numbers(data, "data", (1,))
     t_model, model = numbers(t_model, "t_model", (1,)), numbers(model, "model", (1,))
     if t.shape != data.shape or t_model.shape != model.shape:
         raise Error(f"there are {t.size} times for {data.size} data and {t_model.size} for {model.size} values of the "
                     "model: give one for each")
+    side = np.zeros(t.shape) if side is None else numbers(side, "side", (1,))
     axes = axes_of(axes, figsize=(5, 3.2))
     axes.plot(t_model, model, **look({"color": colours[0], "linewidth": 1.3, "zorder": 2}, style))
-    axes.errorbar(t, data, yerr=sigma, linestyle="none", marker="o", markersize=3.5, color="black", elinewidth=0.8,
-                  zorder=3)
+    of = {"linestyle": "none", "color": data_color, "zorder": 3}
+    there = side == 0
+    bars = None if sigma is None else np.broadcast_to(sigma, t.shape)[there]
+    axes.errorbar(t[there], data[there], yerr=bars, marker="o", markersize=3.5, elinewidth=0.8, **of)
+    for beyond, marker in ((-1, "v"), (1, "^")):
+        cut = side == beyond
+        if cut.any():
+            axes.plot(t[cut], data[cut], marker=marker, markersize=6, markerfacecolor="none", **of)
     axes.set_xlabel("t" if xlabel is None else xlabel)
     axes.set_ylabel(ylabel)
     return axes

@@ -11,13 +11,17 @@ import numpy as np
 
 from ..base import html, plots
 from ..base.errors import Error
+from ..base.plot_parts import legend, several_colours
 from ..models.components import by_component, listed, name_of, unknown
 from ..results.report import Interrupted
 from ..results.run import Run
 from ..sweeps.inputs import whole
 from .designs import hypercube
+from .experiments import Experiment
 from .least_squares import LeastSquares
 from .levenberg_marquardt import Descent, status_names
+from .likelihood import Likelihood
+from .noise_models import NoiseModel
 from .objective import Objective, from_logarithms, logarithms
 from .profile import Profile
 from .student_t import student_quantile
@@ -49,8 +53,7 @@ class Fit(Generic[SomeObjective]):
         self.values = _by_name(problem, values)  #: where each ended, by name
         self.index = int(np.argmin(descent.loss))  #: of the best start
         if not np.isfinite(descent.loss[self.index]):
-            raise Error("no start of the fit has a solution up to the last time of the data: look at one by "
-                        "my.least_squares(...).run(values).report, and give narrower bounds")
+            raise Error(problem.why_none())
         self.best = {name: float(of[self.index]) for name, of in self.values.items()}  #: the best values, by name
         residuals, self._jacobian = descent.best
         self.residuals: Array = residuals  #: in the order of `problem.labels`
@@ -178,16 +181,27 @@ class Fit(Generic[SomeObjective]):
 
     def plot(self, *, axes: Any = None, **style: Any) -> Any:
         """Draws a panel for each quantity in the data, into a new figure, or into as many `axes`: the data over the
-        best model, at times between those of the data too. Further arguments go to matplotlib's `plot` of the model.
-        Returns the axes in an array."""
+        best model, at times between those of the data too, each experiment in its colour, with a legend of
+        up to 36. Triangles are values of which only is known that they are below or above a limit. Further arguments go
+        to matplotlib's `plot` of the model. Returns the axes in an array."""
         curves = self.problem.curves([self.best[name] for name in self.problem.names])
+        names = list(dict.fromkeys(of.experiment for several in curves.values() for of in several))
+        columns = -(-len(names) // 9)  # so many are as high as a panel
+        has_legend = len(names) > 1 and columns <= 4
         if axes is None:
-            axes = plots.panels(len(curves))
+            axes = plots.panels(len(curves), 1.3 * columns if has_legend else 0.0)
         if np.size(axes) != len(curves):
             raise Error(f"there are {np.size(axes)} axes for {', '.join(curves)}: give one for each")
-        for of, into in zip(curves.values(), np.ravel(axes)):
-            plots.data_and_model(of.t_data, of.data, of.t, of.model, sigma=of.sigma, xlabel=of.t_label,
-                                 ylabel=of.label, axes=into, **style)
+        colours = dict(zip(names, several_colours(len(names))))
+        for several, into in zip(curves.values(), np.ravel(axes)):
+            for of in several:
+                own = {"color": colours[of.experiment], "label": of.experiment, **style} if len(names) > 1 else style
+                plots.data_and_model(of.t_data, of.data, of.t, of.model, sigma=of.sigma, side=of.side,
+                                     data_color=own.get("color", "black") if len(names) > 1 else "black",
+                                     xlabel=of.t_label, ylabel=of.label, axes=into, **own)
+        if has_legend:
+            lines = {line.get_label(): line for into in np.ravel(axes) for line in into.lines}
+            legend(np.ravel(axes)[-1], handles=[lines[name] for name in names], ncols=columns)
         return np.ravel(axes)
 
     def run(self) -> Run:
@@ -223,29 +237,43 @@ def _by_name(problem: Objective, values: Array) -> dict[str, Any]:
     return {name: values[..., i] for i, name in enumerate(problem.names)}
 
 
-def fit(model: AnyModel, data: Any, *, free: ByComponent, starts: int | ByComponent = 16,
-        sweep: ByComponent | None = None, start: ByComponent | None = None, begin: float = 0.0, sigma: Any = None,
-        iterations: int = 100, tolerance: float = 1e-10, seed: int = 0, **options: Any) -> Fit[LeastSquares]:
-    """Fits a model to data by least squares from many starts.
+def fit(model: AnyModel, data: Any, *, free: ByComponent, own: SomeComponents | None = None,
+        starts: int | ByComponent = 16, sweep: ByComponent | None = None, start: ByComponent | None = None,
+        begin: float = 0.0, sigma: Any = None, limits: Any = None, priors: ByComponent | None = None,
+        iterations: int = 100, tolerance: float = 1e-10, seed: int = 0, **options: Any) -> Fit[Any]:
+    """Fits a model to data by least squares, or by likelihood, from many starts.
 
     model       from `my.model(...)`, or another that `solve` takes with sensitivities
-    data        a dict, or a data frame, with times "t" and values of states or outputs by name; NaN: no value
+    data        a dict, or a data frame, with times "t" and values of states or outputs by name; NaN: no value. Or a
+                list of experiments, each of which is `my.experiment(data, ...)` with what differs in it
     free        the parameters and initial states to determine, with their bounds: `{k: (0.1, 10)}`, or
-                `{k: (0.1, 10, "log")}` if the logarithm is to vary
+                `{k: (0.1, 10, "log")}` if the logarithm is to vary; names in `sigma=` and in experiments too
+    own         those of `free` of which each experiment has its own value, "k[name]" in results; others have one in all
     starts      how many starts, in a Latin hypercube within the bounds; or where they are, arrays by name
     sweep       the values of all other parameters, one of each
     start       the initial values of all other states
     begin       the time of the initial values
     sigma       standard deviations of the data: a number, or numbers or arrays of one for each time by name; without,
-                all are equal and estimated from the residuals
+                all are equal and estimated from the residuals. Or a noise model of `my.noise_models`, or a name in
+                `free=`, for all data or by name: the loss is then the negative logarithm of the likelihood
+    limits      of quantification, `{x: (0.1, None)}`, lower and upper: of values there or beyond counts only that they
+                are. It needs `sigma`
+    priors      what is known of free components, `{k: my.priors.log_normal(0.5, 0.3)}`; it needs `sigma`
     iterations  the most of each start
     tolerance   relative change of the loss at which a start has converged
     seed        of the hypercube
 
-    Further arguments are those of `solve`: method, rtol, atol, device ... All starts are integrated as one ensemble,
-    with sensitivities, in every iteration. Ctrl-C raises `my.Interrupted`, whose `fit` is that of the iterations
-    that were done."""
-    problem = LeastSquares(model, data, free, sweep, start, begin, sigma, options)
+    Further arguments are those of `solve`: method, rtol, atol, device ... All starts of all experiments are integrated
+    as one ensemble, with sensitivities, in every iteration. Ctrl-C raises `my.Interrupted`, whose `fit` is that of the
+    iterations that were done."""
+    several = isinstance(data, (list, tuple)) and any(isinstance(one, Experiment) for one in data)
+    noise = sigma.values() if hasattr(sigma, "items") else [sigma]
+    problem: Objective
+    if (several or isinstance(data, Experiment) or own is not None or limits is not None or priors is not None
+            or any(isinstance(one, (str, NoiseModel)) for one in noise)):
+        problem = Likelihood(model, data, free, own, sweep, start, begin, sigma, limits, priors, options)
+    else:
+        problem = LeastSquares(model, data, free, sweep, start, begin, sigma, options)
     return minimised(problem, starts, iterations, tolerance, seed)
 
 

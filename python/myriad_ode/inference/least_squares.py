@@ -12,10 +12,10 @@ from ..base.errors import Error
 from ..base.statuses import status_names
 from ..gradients.adjoint import Adjoint
 from ..gradients.forward import forward_of, refuse_chosen, tolerances
-from ..models.components import Components, by_component, unknown
+from ..models.components import Components, by_component
 from ..models.noise import refuse_derivatives
 from ..sweeps.inputs import by_name, real
-from ..symbolic.symbols import time
+from .data import Data, by_quantity, deviations, read_data
 from .objective import Curve, Free, Objective
 
 if TYPE_CHECKING:
@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from ..symbolic.types import Array, ByComponent, Values
 
 __all__ = ["LeastSquares", "least_squares"]
-
-_time_names = ("t", "time")
 
 
 class LeastSquares(Objective):
@@ -59,81 +57,25 @@ class LeastSquares(Objective):
         return Adjoint(self.model, self.names, list(self.data), self._forward.sweep, self._forward.start,
                        {**self._forward.plain_options(), "time": (self._begin, float(self.times[-1]))}, self.times)
 
-    def _read(self, data: Any, sigma: Any) -> None:
+    def _read(self, given: Any, sigma: Any) -> None:
         """Takes times, values and their standard deviations."""
-        columns = self._columns(data)
-        times = columns.pop("t", None)
-        if times is None:
-            raise Error("data has no times: give them as \"t\"")
-        if not columns:
-            raise Error("data has times alone: give values by the names of states or outputs")
-        self._check(times, columns)
-        self.data = columns
-        self.times, where = np.unique(times, return_inverse=True)
-        there = {name: np.flatnonzero(~np.isnan(values)) for name, values in columns.items()}
-        self._where = {name: where[rows] for name, rows in there.items()}
+        data = read_data(self._components, given, self._begin)
+        self.data = data.values
+        self.times, where = np.unique(data.times, return_inverse=True)
+        self._where = {name: where[rows] for name, rows in data.there.items()}
         #: (name, time) of each residual
-        self.labels = [(name, float(times[i])) for name, rows in there.items() for i in rows]
+        self.labels = [(name, float(data.times[i])) for name, rows in data.there.items() for i in rows]
         self.has_sigma = sigma is not None
-        self._sigma = np.concatenate(self._deviations(sigma, there, times.shape))
-        self._observed = np.concatenate([columns[name][rows] for name, rows in there.items()])
+        self._sigma = np.concatenate(self._deviations(sigma, data))
+        self._observed = np.concatenate([data.values[name][rows] for name, rows in data.there.items()])
 
-    def _columns(self, data: Any) -> dict[str, Array]:
-        """Data by the names of components, times as "t"."""
-        if not hasattr(data, "items"):
-            raise Error(f"data is a {type(data).__name__}: give a dict or a data frame with times and values by name, "
-                        "as in {\"t\": times, x: values}")
-        columns: dict[str, Array] = {}
-        for key, values in data.items():
-            is_time = key is time or isinstance(key, str) and key in _time_names and key not in self._components.place
-            name = "t" if is_time else self._components.component(key)
-            if name in columns:
-                raise Error(f"data has '{name}' twice: give it once")
-            try:
-                columns[name] = np.asarray(values, float)
-            except (TypeError, ValueError):
-                raise Error(f"data of '{name}' has values that are no numbers: give numbers, NaN where there is none"
-                            ) from None
-        return columns
-
-    def _check(self, times: Array, columns: Mapping[str, Array]) -> None:
-        """Refuses data that the model has nothing to compare with."""
-        possible = [*self._components.states, *self._components.outputs]
-        for name, values in columns.items():
-            if name not in possible:
-                raise unknown(name, possible, "state or output of the model, which data are compared with")
-            if values.shape != times.shape or values.ndim != 1:
-                raise Error(f"data has {values.size} values of '{name}' and {times.size} times: give one for each "
-                            "time, NaN where there is none")
-            if np.isinf(values).any() or np.isnan(values).all():
-                raise Error(f"data of '{name}' has infinite values, or none: give numbers, NaN where there is none")
-        if not np.isfinite(times).all() or (times < self._begin).any():
-            wrong = times[~(np.isfinite(times) & (times >= self._begin))][0]
-            raise Error(f"data has the time {wrong:g}, and the model begins at {self._begin:g}: give finite times from "
-                        "there on, or begin=")
-        if not (times > self._begin).any():
-            raise Error(f"all times of data are {self._begin:g}, where the model begins: give later ones too")
-
-    def _deviations(self, sigma: Any, there: Mapping[str, Array], shape: tuple[int, ...]) -> list[Array]:
+    def _deviations(self, sigma: Any, data: Data) -> list[Array]:
         """The standard deviations of the values that are there, for each quantity; 1 where none are known."""
-        given = by_component(sigma, "sigma=") if hasattr(sigma, "items") else dict.fromkeys(there, sigma)
-        for name in given:
-            if self._components.component(name) not in there:
-                raise unknown(self._components.component(name), list(there), "quantity in data")
-        deviations = []
-        for name, rows in there.items():
-            of_name = given.get(name)
-            if of_name is None and sigma is not None:
+        given = by_quantity(self._components, sigma, data.values, "sigma")
+        for name in data.values:
+            if sigma is not None and given.get(name) is None:
                 raise Error(f"sigma= has none for '{name}': give the standard deviation of each quantity in data")
-            values = np.asarray(1.0 if of_name is None else of_name, float)
-            if values.ndim > 1 or values.ndim == 1 and values.shape != shape:
-                raise Error(f"sigma of '{name}' has {values.size} values for {shape[0]} times: give one, or one for "
-                            "each time")
-            values = np.broadcast_to(values, shape)[rows]
-            if not (np.isfinite(values) & (values > 0)).all():
-                raise Error(f"sigma of '{name}' has values that are not positive: give standard deviations")
-            deviations.append(values)
-        return deviations
+        return [deviations(1.0 if sigma is None else given[name], data, name) for name in data.values]
 
     def run(self, values: Values, sensitivities: bool = True) -> Run:
         """The run of one set of values, or of several in rows."""
@@ -144,19 +86,20 @@ class LeastSquares(Objective):
         return self._forward.run(self._forward.of_rows(np.atleast_2d(self._sets(values))), sensitivities,
                                  time=(self._begin, float(self.times[-1])), samples=samples)
 
-    def curves(self, values: Values) -> dict[str, Curve]:
+    def curves(self, values: Values) -> dict[str, list[Curve]]:
         """Data and model of each quantity, for one set of values; the model at times between those of the data too."""
         last = float(self.times[-1])
         times = np.union1d(np.linspace(self._begin, last, 400), self.times)
         run = self._forward.run(self._forward.of_rows(np.atleast_2d(self._sets(values))), time=(self._begin, last),
                                 samples=times)
         units, t_label = self._components.units, f"t ({run.time_unit})" if run.time_unit else "t"
-        found, first = {}, 0
+        found: dict[str, list[Curve]] = {}
+        first = 0
         for name, where in self._where.items():
             these = slice(first, first := first + len(where))
-            found[name] = Curve(self.times[where], self._observed[these],
-                                self._sigma[these] if self.has_sigma else None, times, run._values_of(name)[0],
-                                t_label, f"{name} ({units[name]})" if name in units else name)
+            found[name] = [Curve("", self.times[where], self._observed[these], np.zeros(len(where)),
+                                 self._sigma[these] if self.has_sigma else None, times, run._values_of(name)[0],
+                                 t_label, f"{name} ({units[name]})" if name in units else name)]
         return found
 
     def evaluate(self, values: Values) -> tuple[Array, Array, Array]:

@@ -42,10 +42,13 @@ class Free:
 
 
 class Curve(NamedTuple):
-    """Data of a quantity, with deviations if they are known, and the model at more times."""
+    """Data of a quantity in an experiment, with deviations if they are known, and the model at more times. `side` is 0,
+    but -1 or 1 of values of which only is known that they are below or above."""
 
+    experiment: str
     t_data: Array
     data: Array
+    side: Array
     sigma: Array | None
     t: Array
     model: Array
@@ -81,9 +84,14 @@ class Objective:
         """The run of one set of values, or of several in rows."""
         raise NotImplementedError
 
-    def curves(self, values: Values) -> dict[str, Curve]:
-        """Data and model of each quantity, for one set of values."""
+    def curves(self, values: Values) -> dict[str, list[Curve]]:
+        """Data and model of each quantity in each experiment that has it, for one set of values."""
         raise Error(f"{type(self).__name__} has no picture of data and model: my.fit has one")
+
+    def why_none(self) -> str:
+        """Why there may be no loss, and what to do, where `evaluate` has found none at any start."""
+        return ("no start of the fit has a solution up to the last time of the data: look at one by "
+                "fit.problem.run(values).report, and give narrower bounds")
 
     def evaluate(self, values: Values) -> tuple[Array, Array, Array]:
         """Of sets in rows the loss, and residuals r, [set, residual], and a matrix J, [set, residual, free component]:

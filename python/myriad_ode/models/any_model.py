@@ -88,6 +88,11 @@ class AnyModel(ComponentNames):
         raise Error(f"the model {self.name} is not recorded, and gets no doses{at(users_line())}: add them to the "
                     "model that it is made of, or write stops in C++")
 
+    def with_generated(self, values: Mapping[Any, Any]) -> AnyModel:
+        """The model whose `generate` also sets these components; here a refusal, of one that is not recorded."""
+        raise Error(f"{', '.join(map(str, values))} are expressions in the sweep of a study{at(users_line())}, and the "
+                    f"model {self.name} is no recorded one: give numbers, arrays, or draws of my.uniform and my.normal")
+
     def cpp(self) -> str:
         """The model as the text of a C++ header."""
         return self.source()[0]

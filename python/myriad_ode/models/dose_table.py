@@ -28,6 +28,7 @@ __all__ = ["dose_table"]
 
 #: The number of an instance's subject, in all tables of a model.
 subject = sym.parameter("subject")
+_Dose = tuple[float, float, float, float]
 _columns = ("id", "time", "amt", "evid", "cmt", "rate", "dur", "ii", "addl", "ss", "dv", "mdv")
 
 
@@ -35,9 +36,8 @@ class TabledDoses:
     """What one state gets by a table. Its rows are time, amount, and rate of infusions from then on; those of one
     subject follow each other."""
 
-    def __init__(self, into: Any, of_subjects: list[Array], lag: Any, bioavailability: Any) -> None:
-        self.into, self.lag, self.bioavailability, self.line = into, lag, bioavailability, users_line()
-        name = name_of(into)
+    def __init__(self, name: str, of_subjects: list[Array], lag: Any, bioavailability: Any) -> None:
+        self.into, self.lag, self.bioavailability, self.line = name, lag, bioavailability, users_line()
         lengths = [len(rows) for rows in of_subjects]
         rows = _padded(np.concatenate(of_subjects), 0.0)
         self.table = Table(sym.check_name(f"{name}_doses", "a table"), rows)
@@ -124,7 +124,7 @@ class DoseTable:
         self.sweep = {subject: np.arange(len(ids), dtype=float)} if parts else {}
 
     def __repr__(self) -> str:
-        states = " and ".join(name_of(part.into) for part in self.parts) or "no state"
+        states = " and ".join(part.into for part in self.parts) or "no state"
         return f"doses into {states} of {len(self.ids)} subjects"
 
 
@@ -154,59 +154,71 @@ def dose_table(data: Mapping[str, Any] | Path, into: Component | Mapping[Any, Co
     """
     line, states = users_line(), _states(into)
     columns = _read(data, line)
-    rows = len(columns["time"])
-    numbers = {name: _numbers(name, columns[name], line, "give a number") for name in _columns
-               if name not in ("id", "cmt") and name in columns}
-    value = {name: numbers.get(name, np.full(rows, np.nan)).tolist() for name in _columns}
-    ids = columns.get("id", ["1"] * rows)
-    number_of = {one: number for number, one in enumerate(dict.fromkeys(ids))}
-    targets = {name_of(state): state for state in states.values()}
-    given: dict[str, list[list[tuple[float, float, float, float]]]] = {name: [[] for _ in number_of]
-                                                                       for name in targets}
-    seen: list[list[tuple[float, float]]] = [[] for _ in number_of]
-    begin, end = np.full(len(number_of), np.inf), np.full(len(number_of), -np.inf)
-    for row, id in enumerate(ids):
-        of_row = {name: of_column[row] for name, of_column in value.items()}
-        where_it_is, time = f"row {row + 1} of the table of doses{at(line)}", of_row["time"]
-        if _is_missing(id):
-            raise Error(f"{where_it_is} has no id: give the subject")
-        if not np.isfinite(time):
-            raise Error(f"{where_it_is} has the time {time}: give a finite number")
-        number = number_of[id]
-        if time < end[number]:
-            raise Error(f"{where_it_is} has the time {time} after {end[number]}: sort the rows of each subject by time")
-        begin[number], end[number] = min(begin[number], time), time
-        if _is_dose(of_row, where_it_is):
-            state = _state_of(columns["cmt"][row] if "cmt" in columns else None, states, where_it_is)
-            given[name_of(state)][number] += _doses_of(of_row, where_it_is)
-        elif of_row["evid"] != 2 and of_row["mdv"] != 1 and not np.isnan(of_row["dv"]):
-            seen[number].append((time, of_row["dv"]))
-    parts = [TabledDoses(targets[name], [_rows(several) for several in of_subjects], lag, bioavailability)
-             for name, of_subjects in given.items() if any(of_subjects)]
+    values = {name: _numbers(name, columns[name], line, "give a number").tolist() for name in _columns
+              if name in columns and name not in ("id", "cmt")}
+    ids = columns.get("id", ["1"] * len(columns["time"]))
+    rows = _Rows(ids, states)
+    for i, subject in enumerate(ids):
+        row = {name: values[name][i] if name in values else np.nan for name in _columns}
+        rows.add(subject, row, columns["cmt"][i] if "cmt" in columns else None,
+                 f"row {i + 1} of the table of doses{at(line)}")
+    parts = [TabledDoses(state, [_rows_of(several) for several in rows.given[state].values()], lag, bioavailability)
+             for state in rows.given if any(rows.given[state].values())]
     if any(part.is_infusion for part in parts) and not (isinstance(bioavailability, (int, float))
                                                         and bioavailability == 1):
         raise Error(f"a table with infusions has the bioavailability {bioavailability!r}{at(line)}, which would change "
                     "how long they take: write my.doses for each")
-    made = DoseTable(parts, list(number_of))
-    made.time = begin, end
-    numbers_of_rows = [number_of[id] for id in ids]
-    made.covariates = {name: _constant(name, of_column, numbers_of_rows, made.ids, line)
-                       for name, of_column in columns.items() if name not in _columns}
-    most = max(map(len, seen))
-    padded = np.array([[*several, *[(np.nan, np.nan)] * (most - len(several))] for several in seen]
-                      ).reshape(len(seen), most, 2)
-    made.observed_times, made.observed = padded[..., 0], padded[..., 1]
+    made = DoseTable(parts, list(rows.begin))
+    made.time = np.array([*rows.begin.values()]), np.array([*rows.end.values()])
+    made.covariates = {name: _constant(name, of_column, ids, line) for name, of_column in columns.items()
+                       if name not in _columns}
+    made.observed_times, made.observed = rows.observed()
     return made
 
 
-def _states(into: Any) -> dict[Any, Any]:
-    """The states by what a table calls them, or one for all rows, by None."""
+class _Rows:
+    """What the rows of a table say of each subject, in the order in which subjects come."""
+
+    def __init__(self, ids: list[Any], states: Mapping[Any, str]) -> None:
+        order = dict.fromkeys(ids)
+        self.states = states  #: by key
+        #: begin, end, amount at once and rate of the doses, by state and subject
+        self.given: dict[str, dict[Any, list[_Dose]]] = {state: {one: [] for one in order} for state in states.values()}
+        self.seen: dict[Any, list[tuple[float, float]]] = {one: [] for one in order}
+        self.begin: dict[Any, float] = dict.fromkeys(order, np.inf)
+        self.end: dict[Any, float] = dict.fromkeys(order, -np.inf)
+
+    def add(self, subject: Any, row: Mapping[str, float], compartment: Any, where_it_is: str) -> None:
+        """Takes a row, or refuses it."""
+        time, last = row["time"], self.end[subject]
+        if _is_missing(subject):
+            raise Error(f"{where_it_is} has no id: give the subject")
+        if not np.isfinite(time):
+            raise Error(f"{where_it_is} has the time {time}: give a finite number")
+        if time < last:
+            raise Error(f"{where_it_is} has the time {time} after {last}: sort the rows of each subject by time")
+        self.begin[subject], self.end[subject] = min(self.begin[subject], time), time
+        if _is_dose(row, where_it_is):
+            self.given[_state_of(compartment, self.states, where_it_is)][subject] += _doses_of(row, where_it_is)
+        elif row["evid"] != 2 and row["mdv"] != 1 and not np.isnan(row["dv"]):
+            self.seen[subject].append((time, row["dv"]))
+
+    def observed(self) -> tuple[Array, Array]:
+        """Times and values of the observations, a row for each subject."""
+        most = max(map(len, self.seen.values()))
+        padded = np.array([[*several, *[(np.nan, np.nan)] * (most - len(several))] for several in self.seen.values()]
+                          ).reshape(len(self.seen), most, 2)
+        return padded[..., 0], padded[..., 1]
+
+
+def _states(into: Any) -> dict[Any, str]:
+    """The names of the states by what a table calls them, or one for all rows, by None."""
     if not isinstance(into, Mapping):
         into = {None: into}
     if not into or any(isinstance(state, (list, tuple)) for state in into.values()):
         raise Error(f"the states of a table of doses are {next(iter(into.values()), into)!r}{at(users_line())}: give "
                     "one state, or a dict {cmt: state}")
-    return {_key(given): state for given, state in into.items()}
+    return {_key(given): name_of(state) for given, state in into.items()}
 
 
 def _key(given: Any) -> Any:
@@ -276,7 +288,7 @@ def _is_dose(row: Mapping[str, float], where_it_is: str) -> bool:
     return evid == 1
 
 
-def _state_of(given: Any, states: Mapping[Any, Any], where_it_is: str) -> Any:
+def _state_of(given: Any, states: Mapping[Any, str], where_it_is: str) -> str:
     """Which of the states gets a dose."""
     key = None if None in states else _key(given)
     if key not in states:
@@ -285,7 +297,7 @@ def _state_of(given: Any, states: Mapping[Any, Any], where_it_is: str) -> Any:
     return states[key]
 
 
-def _doses_of(row: Mapping[str, float], where_it_is: str) -> list[tuple[float, float, float, float]]:
+def _doses_of(row: Mapping[str, float], where_it_is: str) -> list[_Dose]:
     """Begin, end, amount at once and rate of the doses of a row."""
     rate, duration, more, interval = (0.0 if np.isnan(row[name]) else row[name]
                                       for name in ("rate", "dur", "addl", "ii"))
@@ -309,7 +321,7 @@ def _doses_of(row: Mapping[str, float], where_it_is: str) -> list[tuple[float, f
     return [(begin, begin + length, 0.0 if length > 0 else row["amt"], rate) for begin in begins]
 
 
-def _rows(several: list[tuple[float, float, float, float]]) -> Array:
+def _rows_of(several: list[_Dose]) -> Array:
     """The rows of a subject: times, amounts, and rates from then on."""
     infusions = [(begin, end, rate) for begin, end, _, rate in several if rate > 0]
     happening = sorted([(begin, amount) for begin, _, amount, _ in several] + [(end, 0.0) for _, end, _ in infusions],
@@ -318,14 +330,14 @@ def _rows(several: list[tuple[float, float, float, float]]) -> Array:
                      for time, amount in happening]).reshape(-1, 3)
 
 
-def _constant(name: str, given: list[Any], numbers: list[int], ids: list[Any], line: tuple[str, int] | None) -> Array:
+def _constant(name: str, given: list[Any], ids: list[Any], line: tuple[str, int] | None) -> Array:
     """A covariate of each subject."""
-    made = np.full(len(ids), np.nan)
-    for number, value in zip(numbers, _numbers(name, given, line, "give a number, or leave the column out")):
-        if np.isnan(made[number]):
-            made[number] = value
-        elif value != made[number] and not np.isnan(value):
-            raise Error(f"the column '{name}' of the table of doses{at(line)} changes within the subject "
-                        f"{ids[number]!r}, from {made[number]:g} to {value:g}: leave it out, and interpolate it "
-                        "in the model by my.interpolate")
-    return made
+    made: dict[Any, float] = dict.fromkeys(ids, np.nan)
+    for subject, number in zip(ids, _numbers(name, given, line, "give a number, or leave the column out")):
+        if np.isnan(made[subject]):
+            made[subject] = float(number)
+        elif number != made[subject] and not np.isnan(number):
+            raise Error(f"the column '{name}' of the table of doses{at(line)} changes within the subject {subject!r}, "
+                        f"from {made[subject]:g} to {number:g}: leave it out, and interpolate it in the model by "
+                        "my.interpolate")
+    return np.array([*made.values()])

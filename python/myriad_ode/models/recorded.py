@@ -233,6 +233,16 @@ class RecordedModel(AnyModel):
                         "it is: read the file without reduce=True")
         return columns[name]
 
+    def with_generated(self: Recorded, values: ByComponent) -> Recorded:
+        """The model whose `generate` also sets these components of the instances of a study."""
+        made = self.changeable()
+        made.generate = [*self.generate, *self._reader.generate(values)]
+        made._as_given = copy.copy(self._as_given)
+        made._as_given.generate = made.generate
+        made._collect(list(made.equations))
+        made._check()
+        return made
+
     def with_jumps_apart(self: Recorded, moves: Callable[[set[Any]], bool]) -> Recorded:
         """The model in which jumps at times that depend on certain symbols have stops of their own, so that each
         contributes the derivative of its own time; the model itself if no jump depends on them."""

@@ -37,6 +37,8 @@ from ..solving.progress import ProgressDisplay
 from ..sweeps.inputs import by_name, only, path_text, real, text, whole
 from ..sweeps.sweep import Sweep
 from ..symbolic.axes import Axis, Random
+from ..symbolic.functions import draws
+from ..symbolic.node import Node
 from ..symbolic.symbols import time as time_symbol
 from .executed_run import ExecutedRun
 from .reduce import Reduction
@@ -77,6 +79,8 @@ class Study:
             raise Error(f"the model is a {type(model).__name__}: make it by my.model(...)")
         if precision not in ("double", "float"):
             raise Error(f"precision is {precision!r}: give \"double\" or \"float\"")
+        model, sweep = _computed_by(model, sweep)
+        model, start = _computed_by(model, start)
         chosen = method_for(model, method, precision)
         if chosen in fixed_step and options.step is None:
             raise Error(f"{chosen} takes fixed steps: give step=")
@@ -321,6 +325,18 @@ class Study:
                         f"{error}") from None
 
 
+def _computed_by(model: AnyModel, given: Any) -> tuple[AnyModel, Any]:
+    """The model that also computes what is given as expressions, where instances are integrated, and the rest of what
+    is given. A single draw is none of these: the core draws it."""
+    def is_expression(value: Any) -> bool:
+        return isinstance(value, Node) and (value.op not in draws or any(b.op != "constant" for b in value.args))
+
+    computed = {} if not isinstance(given, Mapping) else {k: v for k, v in given.items() if is_expression(v)}
+    if not computed:
+        return model, given
+    return model.with_generated(computed), {k: v for k, v in given.items() if k not in computed}
+
+
 @takes_options(StudyArguments)
 def study(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: ByComponent | None = None,
           time: tuple[Any, Any] | None = None, keep: SomeComponents | Mapping[str, Any] | None = None,
@@ -335,7 +351,9 @@ def study(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
     sweep     as in `solve`: `my.grid(...)` for all combinations of its axes, or a dict whose arrays go together.
               Besides arrays and numbers, values are `my.linspace(a, b, n)`, `my.geomspace(a, b, n)`, of which
               none is stored, and `my.uniform(a, b)`, `my.normal(mean, deviation)`, which draw a
-              value for each instance. States and `my.t_begin`, `my.t_end` may have axes too
+              value for each instance. States and `my.t_begin`, `my.t_end` may have axes too. A dict may also have
+              expressions, of draws and of parameters and shared values, as `my.lognormal(5, 0.3) * (weight / 70)`,
+              which `generate=` of the model then computes
     start     initial values, as in `solve`
     time      begin and end; None for one that is in the sweep
     keep      components whose last values are kept, `my.time` for the time at which the last phase ended; or

@@ -49,7 +49,7 @@ class Along:
 def _instead_of(value: Any, name: str) -> str:
     """What to give instead of something that is no number."""
     if isinstance(value, Node) and any(node.op in draws for node in walk([value])):
-        return f"the draw itself, or let the model of a study compute it, my.model(..., generate={{{name}: {value!r}}})"
+        return f"it to a study, in the dict of its sweep, as in my.study(model, {{{name}: {value!r}}}, draws=100)"
     return "a number, or an array with one number per instance"
 
 

@@ -5,6 +5,7 @@ its kind and its name: made twice, it is the same.
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Collection
 from typing import TYPE_CHECKING, Any, Protocol
@@ -79,7 +80,7 @@ def free_name(name: str, taken: Collection[str]) -> str:
     that is not taken."""
     if not _is_allowed(name) and not _is_allowed(f"{name}_"):
         name = f"x_{name}"  # as all names that begin like C's M_PI
-    for candidate in (name, f"{name}_", *(f"{name}_{i}" for i in range(2, 10000))):
+    for candidate in itertools.chain((name, f"{name}_"), (f"{name}_{i}" for i in range(2, 10000))):
         if candidate not in taken and _is_allowed(candidate):
             return candidate
     raise Error(f"no name for a component is left that is like '{name}'")

@@ -12,14 +12,15 @@ import numpy as np
 
 from ...base.errors import Error
 from ...gradients.forward import Forward, refuse_chosen, tolerances
+from ...inference.measurements import Given, Terms, added, normal_loss, normal_terms, sample_times
 from ...inference.objective import Free, Objective
+from ...inference.priors import Prior, terms_of
 from ...models.components import Components
 from ...symbolic.derivatives import derivatives
 from ...symbolic.evaluate import evaluate
 from ...symbolic.node import Node, symbols_of
 from ...symbolic.symbols import time
 from ..sbml.model import SbmlModel
-from .priors import Prior, scaled_by
 
 if TYPE_CHECKING:
     from ...models.any_model import AnyModel
@@ -27,27 +28,6 @@ if TYPE_CHECKING:
     from ...symbolic.types import Array, Values
 
 __all__ = ["PetabLikelihood"]
-
-_ln10 = float(np.log(10))
-
-
-@dataclass
-class Given:
-    """What parameters are set to: each of several is a number, or the free component whose number `free` has, or -1."""
-
-    free: Array
-    number: Array
-
-    @staticmethod
-    def of(resolved: Sequence[tuple[int, float]]) -> Given:
-        return Given(np.array([k for k, _ in resolved], int), np.array([v for _, v in resolved], float))
-
-    def values(self, sets: Array) -> Array:
-        """The values for sets of the free components, [set, one of several]."""
-        return np.where(self.free >= 0, sets[:, self.free], self.number)
-
-    def at(self, rows: Array) -> Given:
-        return Given(self.free[rows], self.number[rows])
 
 
 @dataclass
@@ -76,7 +56,7 @@ class Experiment:
     time: Array
     measured: Array
     observables: list[Observed]
-    priors: list[Prior]
+    priors: list[tuple[int, Prior]]
 
 
 class _Instances:
@@ -129,10 +109,7 @@ class PetabLikelihood(Objective):
         self._sampled = [n for n in components.states if n in read] or components.states[:1]
         of_conditions = [np.unique(experiment.time[experiment.condition == c]) for c in range(len(self.conditions))]
         self._ends = np.array([t[-1] if t[-1] > 0 else 1.0 for t in of_conditions])
-        most = max(map(len, of_conditions))
-        # as many samples of each condition, at other times too where it has fewer
-        others = [np.setdiff1d(np.linspace(0, end, 2 * most + 1), t) for t, end in zip(of_conditions, self._ends)]
-        self._times = np.stack([np.sort(np.append(t, more[:most - t.size])) for t, more in zip(of_conditions, others)])
+        self._times = sample_times(of_conditions, np.zeros(len(self._ends)), self._ends)
         self._place = np.array([np.searchsorted(self._times[c], t)
                                 for c, t in zip(experiment.condition, experiment.time)])
         self._estimated = {o.name: self._noise_varies(o) for o in experiment.observables}
@@ -145,7 +122,7 @@ class PetabLikelihood(Objective):
             of_rows = [(o.name, self.conditions[experiment.condition[r]], float(experiment.time[r])) for r in o.rows]
             self.labels += of_rows
             self.labels += [("noise", *label) for label, varies in zip(of_rows, self._estimated[o.name]) if varies]
-        self.labels += [("prior", prior.name) for prior in experiment.priors]
+        self.labels += [("prior", self.names[k]) for k, _ in experiment.priors]
 
     def _noise_varies(self, o: Observed) -> Array:
         """Whether the noise of each measurement of an observable depends on what is estimated."""
@@ -191,30 +168,16 @@ class PetabLikelihood(Objective):
         J^T J the Fisher information. NaN where the model has no solution."""
         sets = np.atleast_2d(self._sets(values))
         run, instances = self._solve(sets, True)
-        total, residuals, jacobian = np.zeros(len(sets)), [], []
+        terms: list[Terms] = []
         with np.errstate(all="ignore"):
             for o in self._experiment.observables:
                 known = self._known(o, run, instances, sets)
-                mean, deviation, loss = self._distribution(o, known)
+                mean, deviation = self._distribution(o, known)
                 by_mean, by_noise = self._derivatives(o, run, instances, known)
-                r = (scaled_by(o.scale, mean)[0] - self._measured(o)) / deviation
-                total += loss.sum(axis=1)
-                residuals.append(r)
-                jacobian.append(by_mean * (scaled_by(o.scale, mean)[1] / deviation)[..., None])
-                varies = self._estimated[o.name]
-                if varies.any():
-                    residuals.append(((1 - r**2) / np.sqrt(2))[:, varies])
-                    jacobian.append((np.sqrt(2) * by_noise / deviation[..., None])[:, varies])
-            for prior in self._experiment.priors:
-                k = self.names.index(prior.name)
-                r, inner = prior.residual(sets[:, [k]])
-                total += 0.5 * r[:, 0] ** 2 + prior.constant
-                residuals.append(r)
-                jacobian.append(inner[..., None] * (np.arange(len(self.names)) == k))
-        found, by = np.concatenate(residuals, axis=1), np.concatenate(jacobian, axis=1)
-        lost = ~(np.isfinite(total) & np.isfinite(found).all(axis=1))
-        total[lost], found[lost], by[lost] = np.nan, np.nan, np.nan
-        return total, found, by
+                terms.append(normal_terms(o.scale, self._measured(o), mean, by_mean, deviation, by_noise,
+                                          self._estimated[o.name]))
+            terms += [terms_of(prior, sets, k) for k, prior in self._experiment.priors]
+        return added(terms)
 
     def simulate(self, values: Values) -> Array:
         """The observables at the measurements, in the order of their table, of one set or of sets in rows."""
@@ -231,8 +194,8 @@ class PetabLikelihood(Objective):
         sets = np.atleast_2d(self._sets(values))
         run, instances = self._solve(sets, False)
         with np.errstate(all="ignore"):
-            found = -sum(self._distribution(o, self._known(o, run, instances, sets))[2].sum(axis=1)
-                         for o in self._experiment.observables)
+            found = -sum(normal_loss(o.scale, self._measured(o), *self._distribution(
+                o, self._known(o, run, instances, sets))).sum(axis=1) for o in self._experiment.observables)
         return found[0] if np.ndim(values) == 1 else found
 
     def residuals(self, values: Values) -> Array:
@@ -253,7 +216,7 @@ class PetabLikelihood(Objective):
                         "gradient")
 
     def _measured(self, o: Observed) -> Array:
-        return scaled_by(o.scale, self._experiment.measured[o.rows])[0]
+        return self._experiment.measured[o.rows]
 
     def _known(self, o: Observed, run: Run, instances: _Instances, sets: Array) -> dict[Any, Array]:
         """The values of all symbols of an observable and its noise at its measurements, [set, measurement]."""
@@ -283,17 +246,11 @@ class PetabLikelihood(Objective):
         by_condition = samples.reshape(count, len(self.conditions), -1)
         return by_condition[:, self._experiment.condition[o.rows], self._place[o.rows]]
 
-    def _distribution(self, o: Observed, known: dict[Any, Array]) -> tuple[Array, Array, Array]:
-        """Mean and standard deviation of the measurements of an observable, and the negative logarithms of their
-        likelihoods."""
+    def _distribution(self, o: Observed, known: dict[Any, Array]) -> tuple[Array, Array]:
+        """Mean and standard deviation of the measurements of an observable, NaN where that is not positive."""
         shape = next(iter(known.values())).shape if known else (1, o.rows.size)
         mean, deviation = (np.broadcast_to(f, shape) for f in evaluate([o.value, o.noise], known))
-        deviation = np.where(deviation > 0, deviation, np.nan)
-        loss = 0.5 * ((scaled_by(o.scale, mean)[0] - self._measured(o)) / deviation)**2 + np.log(deviation) + (
-            0.5 * np.log(2 * np.pi))
-        if o.scale != "lin":
-            loss = loss + np.log(self._experiment.measured[o.rows] * (_ln10 if o.scale == "log10" else 1.0))
-        return mean, deviation, loss
+        return mean, np.where(deviation > 0, deviation, np.nan)
 
     def _derivatives(self, o: Observed, run: Run, instances: _Instances, known: dict[Any, Array]
                      ) -> tuple[Array, Array]:
@@ -320,8 +277,7 @@ class PetabLikelihood(Objective):
                 for d, wrt in enumerate(self._varied):
                     by_model[..., d] += partial * self._at(run._values_of(f"{name}_by_{wrt}"), o, sets)
             elif given is not None:
-                rows = np.flatnonzero(given.free >= 0)
-                found[:, rows, given.free[rows]] += partial[:, rows]
+                given.add_chain(found, partial)
             elif name in self._varied:
                 by_model[..., self._varied.index(name)] += partial
         for c in range(len(self.conditions)):

@@ -1,45 +1,17 @@
 # SPDX-License-Identifier: MIT
-"""Priors of PEtab's parameters as residuals: those whose density is that of a normal distribution on some scale."""
+"""Priors of PEtab's parameters, from its table."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from ...inference.priors import LaplacePrior, NormalPrior, Prior, log_normal_prior
 from ..sbml.math import Refused
 
-if TYPE_CHECKING:
-    from ...symbolic.types import Array
-
-_ln10 = float(np.log(10))
-_of_scale = {"parameterScaleNormal": "normal", "parameterScaleUniform": "uniform"}
-
-
-@dataclass
-class Prior:
-    """The prior of a parameter: its negative logarithm is half the square of a residual, and a constant."""
-
-    name: str
-    scale: str  #: "lin", "log" or "log10": of what is normally distributed
-    mean: float
-    deviation: float
-    constant: float
-
-    def residual(self, value: Array) -> tuple[Array, Array]:
-        """The residual, and its derivative by the parameter."""
-        scaled, inner = scaled_by(self.scale, value)
-        return (scaled - self.mean) / self.deviation, inner / self.deviation
-
-
-def scaled_by(scale: str, value: Array) -> tuple[Array, Array]:
-    """Values on the scale of a parameter or an observable, and the derivative of these by them."""
-    if scale == "log":
-        return np.log(value), 1 / value
-    if scale == "log10":
-        return np.log10(value), 1 / (_ln10 * value)
-    return value, np.ones_like(value)
+_of_scale = {"parameterScaleNormal": "normal", "parameterScaleUniform": "uniform", "parameterScaleLaplace": "laplace",
+             "logNormal": "normal", "logLaplace": "laplace"}
 
 
 def unscaled(scale: str, value: float) -> float:
@@ -54,11 +26,12 @@ def read_prior(name: str, row: Any) -> tuple[Prior | None, tuple[float, float]]:
         return None, everywhere
     given = row.get("objectivePriorParameters")
     where = f"the table of parameters, row '{name}', column objectivePrior"
-    scale = row["parameterScale"] if kind.startswith("parameterScale") else "log" if kind == "logNormal" else "lin"
-    known = _of_scale.get(kind, "normal" if kind == "logNormal" else kind)
-    if known not in ("normal", "uniform"):
-        raise Refused(f"{where}Type: {kind}; supported are normal, parameterScaleNormal, logNormal, uniform and "
-                      "parameterScaleUniform")
+    of_logarithm = kind in ("logNormal", "logLaplace")
+    scale = row["parameterScale"] if kind.startswith("parameterScale") else "log" if of_logarithm else "lin"
+    known = _of_scale.get(kind, kind)
+    if known not in ("laplace", "normal", "uniform"):
+        raise Refused(f"{where}Type: {kind}; supported are laplace, normal, uniform, logLaplace, logNormal, "
+                      "parameterScaleLaplace, parameterScaleNormal and parameterScaleUniform")
     if not isinstance(given, str) or not given:
         if kind == "parameterScaleUniform":  # the default: within the bounds
             return None, everywhere
@@ -66,7 +39,8 @@ def read_prior(name: str, row: Any) -> tuple[Prior | None, tuple[float, float]]:
     first, second = (float(part) for part in given.split(";"))
     if known == "uniform":
         return None, (unscaled(scale, first), unscaled(scale, second))
-    constant = float(np.log(second * np.sqrt(2 * np.pi)))
-    if kind == "logNormal":  # its density has 1 / value as a factor: the square is completed
-        first, constant = first - second**2, constant + first - second**2 / 2
-    return Prior(name, scale, first, second, constant), everywhere
+    if known == "laplace":
+        return LaplacePrior(scale, first, second, of_logarithm), everywhere
+    if of_logarithm:
+        return log_normal_prior(first, second), everywhere
+    return NormalPrior(scale, first, second, float(np.log(second * np.sqrt(2 * np.pi)))), everywhere

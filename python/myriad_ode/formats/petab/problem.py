@@ -12,11 +12,13 @@ import numpy as np
 
 from ...base.errors import Error
 from ...inference.fitting import Fit, minimised
+from ...inference.measurements import Given
 from ...inference.objective import Free
+from ...inference.priors import Prior
 from ..sbml.math import Refused
-from .likelihood import Experiment, Given, Observed, PetabLikelihood
+from .likelihood import Experiment, Observed, PetabLikelihood
 from .model import PetabModel
-from .priors import Prior, read_prior
+from .priors import read_prior
 
 if TYPE_CHECKING:
     from ...symbolic.types import Array, ByComponent, Path, Values
@@ -65,9 +67,9 @@ def read_petab(path: Path) -> PetabProblem:
     """The problem of a YAML file of PEtab, version 1. It needs the packages petab and python-libsbml.
 
     Several conditions, observables and noise by any formula with placeholders that measurements set, noise that is
-    estimated, normally distributed on a linear or logarithmic scale, priors that are normal on some scale or uniform.
-    Raises `my.Error` with table, row and column for what is not supported: preequilibration, steady states, noise
-    of Laplace's distribution, priors of other distributions; and for what petab itself finds wrong."""
+    estimated, normally distributed on a linear or logarithmic scale, priors that are normal or Laplace's on some
+    scale, or uniform. Raises `my.Error` with table, row and column for what is not supported: preequilibration, steady
+    states, noise of Laplace's distribution; and for what petab itself finds wrong."""
     return _Reader(_read(path)).problem()
 
 
@@ -131,7 +133,7 @@ class _Reader:
         self._free: list[Free] = []
         self._set_to_free: dict[str, int] = {}
         self._fixed: dict[str, float] = {}
-        self._priors: list[Prior] = []
+        self._priors: list[tuple[int, Prior]] = []
         self._constants = {p.getId(): p.getValue() for p in problem.sbml_model.getListOfParameters()
                            if p.isSetValue() and p.getConstant()
                            and problem.sbml_model.getInitialAssignmentBySymbol(p.getId()) is None}
@@ -171,7 +173,7 @@ class _Reader:
         self._free.append(Free(name, (least, most, *(() if row["parameterScale"] == "lin" else ("log",)))))
         self._set_to_free[self._made.set(name, "the table of parameters")] = len(self._free) - 1
         if prior is not None:
-            self._priors.append(prior)
+            self._priors.append((len(self._free) - 1, prior))
 
     def _refuse_steady_states(self) -> None:
         table = self._measurements

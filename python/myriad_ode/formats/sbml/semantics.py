@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+import collections
+import functools
 import math
 import re
 from dataclasses import dataclass
@@ -330,14 +332,19 @@ class Semantics:
         """The rate of a species' amount that reactions cause."""
         return self._once(("amount rate", name), lambda: self._reactions_of(name), self.quantities[name].where)
 
-    def _reactions_of(self, name: str) -> Any:
-        terms = []
+    @functools.cached_property
+    def _references_of(self) -> dict[str, list[tuple[str, Any, bool]]]:
+        """Where reactions have each species: the reaction, the reference, and whether the reaction takes it."""
+        found = collections.defaultdict(list)
         for key, reaction in self.reactions.items():
             reactants = reaction.getNumReactants()
             for i, reference in enumerate(self.references(reaction)):
-                if reference.getSpecies() == name:
-                    term = multiply(self.stoichiometry(reference, reaction), self.reaction_rate(key))
-                    terms.append((i < reactants, term))
+                found[reference.getSpecies()].append((key, reference, i < reactants))
+        return found
+
+    def _reactions_of(self, name: str) -> Any:
+        terms = [(lost, multiply(self.stoichiometry(reference, self.reactions[key]), self.reaction_rate(key)))
+                 for key, reference, lost in self._references_of.get(name, ())]
         gained = total([t for lost, t in terms if not lost])
         rate = subtract(gained, total([t for lost, t in terms if lost]))
         element = self.quantities[name].element
