@@ -57,6 +57,23 @@ def test_a_list_of_times_has_one_amount_if_one_is_given():
     np.testing.assert_allclose(run[blood], swallowed([1, 1, 4], [5, 5, 5]), rtol=1e-8)
 
 
+def test_times_that_parameters_give_may_come_in_any_order():
+    model = drug.with_doses(my.doses(gut, [30, 7], at=[lag, interval]))
+    run = solved(model, {lag: [3.0, 11.0, 4.0], interval: [8.0, 8.0, 4.0]})
+    expected = [swallowed(times, [30, 7]) for times in ([3, 8], [11, 8], [4, 4])]
+    np.testing.assert_allclose(run[blood], expected, rtol=1e-8)
+
+
+def test_times_may_be_a_range():
+    run = solved(drug.with_doses(my.doses(gut, 5, at=range(0, 24, 6))), {}, size=1)
+    np.testing.assert_allclose(run[blood], swallowed([0, 6, 12, 18], [5] * 4), rtol=1e-8)
+
+
+def test_a_number_of_doses_may_be_a_quotient():
+    run = solved(drug.with_doses(my.doses(gut, 5, every=6, count=24 / 6)), {}, size=1)
+    np.testing.assert_allclose(run[blood], swallowed([0, 6, 12, 18], [5] * 4), rtol=1e-8)
+
+
 def test_infusions_may_overlap():
     run = solved(drug.with_doses(my.doses(blood, dose, every=5, count=4, duration=length)),
                  {dose: 60.0, length: [2.0, 5.0, 12.0]})
@@ -122,6 +139,40 @@ def test_doses_at_the_ends_of_the_time_domain_count():
     np.testing.assert_allclose(run[gut], 3 + 3 * np.exp(-30.0))
 
 
+def test_doses_go_into_one_of_several_units():
+    x, = my.units(3).states("x")
+    model = my.model({x: -elimination * x}, name="units").with_doses(my.doses(x[1], 2, at=1),
+                                                                     my.doses("x_2", 6, duration=3))
+    run = my.solve(model, {elimination: [0.2]}, start={one: 0 for one in x}, time=(0, 5), interpreted=True, rtol=1e-10)
+    np.testing.assert_allclose([run[f"x_{i}"][0] for i in range(3)],
+                               [0, 2 * np.exp(-0.8), infused(np.array([0]), np.array([3]), 2, 5.0)], rtol=1e-8)
+
+
+def test_an_infusion_is_multiplied_by_the_mass_of_its_state():
+    model = my.model({gut: -absorption * gut, blood: 0.5 * (absorption * gut - elimination * blood)},
+                     mass_matrix={blood: 0.5}).with_doses(my.doses(blood, dose, duration=2))
+    slopes = model.derivatives(1.0, [0, 0], absorption=1.0, elimination=0.2, dose=3.0)
+    np.testing.assert_allclose(np.linalg.solve(model.mass_matrix, slopes), [0, 1.5])
+
+
+def test_a_state_without_a_derivative_gets_no_doses():
+    model = my.model({gut: -absorption * gut, blood: gut - blood}, mass_matrix={blood: 0})
+    with pytest.raises(my.Error, match="blood .*, whose derivative is in no equation: choose one of gut"):
+        model.with_doses(my.doses(blood, 1))
+
+
+def test_species_of_a_conserved_sum_get_no_doses():
+    pytest.importorskip("libsbml")
+    from sbml_models import compartment, document, parameter, reaction, species
+    parts = [compartment("c", 1), species("S", concentration=3), species("P", concentration=0), parameter("k", 1),
+             reaction("make", "S -> P", "c * k * S")]
+    whole, reduced = (my.read_sbml(document(parts), reduce=reduce) for reduce in (False, True))
+    run = my.solve(whole.with_doses(my.doses("S", 2, at=1)), time=(0, 3), interpreted=True, rtol=1e-10)
+    np.testing.assert_allclose(run["S"] + run["P"], 5)
+    with pytest.raises(my.Error, match="conserved sum conserved_P would stay as it is: read .* without reduce=True"):
+        reduced.with_doses(my.doses("S", 2, at=1))
+
+
 @pytest.mark.parametrize("wrong, message", [
     (lambda: my.doses(gut, [1, 2], at=[0, 1, 2]), "2 amounts at 3 times.*: give one amount, or one for each time"),
     (lambda: my.doses(gut, 1, at=[]), "1 amounts at 0 times|0 amounts at 0 times"),
@@ -132,10 +183,16 @@ def test_doses_at_the_ends_of_the_time_domain_count():
     (lambda: my.doses(gut, 1, rate=1, duration=2), "give one of them"),
     (lambda: drug.with_doses("gut"), "with_doses gets a str.*: make it by my.doses"),
     (lambda: drug.with_doses(my.doses(dose, 1)), "doses go into dose.*, which is no state.*: choose one of gut, blood"),
-    (lambda: drug.with_doses(my.doses("stomach", 1)), "stomach"),
-    (lambda: drug.with_doses(my.doses(gut, 1, at=gut)), "gut stands in the time"),
-    (lambda: my.CppModel("struct m {};", "m", "x").with_doses(my.doses("x", 1)), "no recorded one"),
-    (lambda: my.with_sensitivities(drug, [absorption]).with_doses(my.doses(gut, 1)), "no recorded one"),
+    (lambda: my.doses(gut, 1, rate=0), "rate=0 .*: give a number above zero, or leave it out for doses at once"),
+    (lambda: my.doses(gut, 1, duration=-1.5), "duration=-1.5 .*: give a number above zero"),
+    (lambda: my.doses(gut, 1, every=0), "every=0 .*: give a number above zero$"),
+    (lambda: my.doses(gut, 1, every=2, count=2.5), "count=2.5 .*: give a whole number"),
+    (lambda: drug.with_doses(my.doses("stomach", 1)), "stomach .*, which is no state .*: choose one of gut, blood"),
+    (lambda: drug.with_doses(my.doses(gut, 1, at=gut)), "depend on gut: they are made of parameters"),
+    (lambda: drug.with_doses(my.doses(gut, blood, duration=2)), "depend on blood: they are made of parameters"),
+    (lambda: drug.with_doses(my.doses(gut, "amount")), r"amount of doses \([^(]*\): 'amount' is unknown"),
+    (lambda: my.CppModel("struct m {};", "m", "x").with_doses(my.doses("x", 1)), "is not recorded"),
+    (lambda: my.with_sensitivities(drug, [absorption]).with_doses(my.doses(gut, 1)), "is not recorded"),
 ])
 def test_what_does_not_fit_is_refused(wrong, message):
     with pytest.raises(my.Error, match=message):
@@ -192,6 +249,62 @@ def test_infusions_of_a_table_may_overlap_and_go_on_over_phases():
         np.testing.assert_allclose(run[blood], expected, rtol=1e-8)
 
 
+def test_infusions_of_a_table_go_on_where_the_time_domain_begins_within_them():
+    records = my.dose_table(dict(id=[1, 1, 2], time=[0, 6, 3], amt=[100, 20, 30], dur=[10, 2, 5]), blood, lag=lag)
+    listed = drug.with_doses(my.doses(blood, 100, duration=10, lag=lag), my.doses(blood, 20, at=6, duration=2, lag=lag))
+    model = drug.with_doses(records)
+    for begin in (0.0, 0.5, 5.0, 6.5, 7.5, 10.5, 11.0):
+        run = solved(model, {**records.sweep, lag: 0.5}, time=(begin, 12))
+        alone = solved(listed, {lag: [0.5]}, time=(begin, 12))
+        np.testing.assert_allclose(run[blood][0], alone[blood][0], rtol=1e-8)
+
+
+def test_subjects_of_a_table_are_an_axis_of_a_grid():
+    records = my.dose_table(dict(id=["a", "b"], time=[0, 3], amt=[10, 20]), gut)
+    sweep = my.grid({**records.sweep, lag: [0.0, 2.0], **rates})
+    model = drug.with_doses(my.doses(blood, 1, at=lag), records)
+    run = my.solve(model, sweep, start={gut: 0, blood: 0}, time=(0, 30), interpreted=True, rtol=1e-10, atol=1e-10)
+    np.testing.assert_allclose(sweep.unstack(run[blood]), [[swallowed([time], [amount]) + np.exp(-0.2 * (30 - late))
+                                                            for late in (0, 2)] for time, amount in ((0, 10), (3, 20))],
+                               rtol=1e-8)
+
+
+def test_compartments_of_a_table_may_be_one_state():
+    records = my.dose_table(dict(time=[0, 0, 5], amt=[1, 2, 4], cmt=["1", 2.0, "depot"]), {1: gut, "2": gut,
+                                                                                         "depot": blood})
+    np.testing.assert_allclose(solved(drug.with_doses(records), records.sweep)[blood],
+                               swallowed([0], [3]) + 4 * np.exp(-0.2 * 25), rtol=1e-8)
+
+
+def test_a_table_is_not_changed_by_a_model_that_reads_it():
+    records = my.dose_table(dict(time=[0], amt=[10]), gut, bioavailability="absorption")
+    for bioavailability in (my.parameter("absorption"), my.shared("absorption")):
+        other = my.model({gut: -bioavailability * gut}).with_doses(records)
+        run = my.solve(other, {**records.sweep, bioavailability: 0.5}, start={gut: 0}, time=(0, 1), interpreted=True)
+        np.testing.assert_allclose(run[gut], 5 * np.exp(-0.5), rtol=1e-6)
+
+
+def test_what_a_table_adds_for_infusions_is_no_result():
+    records = my.dose_table(dict(time=[0], amt=[10], dur=[2]), gut)
+    run = solved(drug.with_doses(records), records.sweep)
+    assert [name for name in run if name.endswith("_end") and name != "t_end"] == ["gut_end", "blood_end"]
+
+
+def test_missing_values_of_pandas_are_missing():
+    pandas = pytest.importorskip("pandas")
+    table = pandas.DataFrame(dict(time=[0.0, 1.0], amt=pandas.array([5, None], dtype="Int64"), dv=[None, 2.0]))
+    records = my.dose_table(table, gut)
+    assert records.observed.tolist() == [[2.0]]
+    np.testing.assert_allclose(solved(drug.with_doses(records), records.sweep)[blood], swallowed([0], [5]), rtol=1e-8)
+
+
+def test_the_doses_of_a_table_are_counted_by_a_letter_that_no_component_has():
+    n = my.state("n")
+    model = my.model({n: -n}).with_doses(my.dose_table(dict(time=[0], amt=[10]), n))
+    stop = next(line for line in model.latex().split("\n") if "stop" in line)
+    assert "+ i < " in stop and r", \; i = 0, 1, \ldots \; \Rightarrow \; n \leftarrow n + " in stop
+
+
 def test_tables_with_other_rows_need_no_other_kernel():
     first, second = (my.dose_table(dict(id=[1, 1, 2], time=[0, k, 3], amt=[k, 20, 5]), gut) for k in (1, 2))
     assert drug.with_doses(first).cpp() == drug.with_doses(second).cpp()
@@ -205,13 +318,25 @@ def test_a_subject_may_have_no_dose():
 
 @pytest.mark.parametrize("columns, message", [
     (dict(amt=[1]), "no column 'time'"),
-    (dict(time=[], amt=[]), "no rows"),
+    (dict(time=[0, 1], amt=[1]), "have 1 or 2 rows"),
+    (dict(time=[], amt=[]), "have 0 rows"),
+    (dict(time=0, amt=[1]), "is no table.*: give a data frame, a dict with a list for each column"),
+    (dict(time=[0], TIME=[1], amt=[1]), "two columns of one name"),
+    ("no_such.csv", "'no_such.csv' cannot be read"),
+    (dict(id=[1, None], time=[0, 0], amt=[1, 1]), "row 2 .* has no id"),
+    (dict(time=[0, "."], amt=[1, 1]), "row 2 .* has the time nan: give a finite number"),
     (dict(time=[0, 2, 1], amt=[1, 1, 1]), r"row 3 .* has the time 1.0 after 2.0: sort the rows"),
     (dict(time=[0], amt=["much"]), "row 1 .* has 'much' in the column 'amt'"),
     (dict(time=[0], amt=[1], ss=[1], ii=[12]), "a steady state: give the doses before it"),
     (dict(time=[0], amt=[1], evid=[4]), "a reset: give what follows another id"),
     (dict(time=[0], amt=[1], evid=[7]), "evid 7: 0, 1 and 2 are known"),
     (dict(time=[0], amt=[0], evid=[1]), "a dose of 0: give an amount above zero"),
+    (dict(time=[0], amt=[-1]), "a dose of -1: give an amount above zero"),
+    (dict(time=[0], amt=[np.inf]), "a dose of inf: give an amount above zero"),
+    (dict(time=[0], amt=[1], dur=[np.inf]), "infinite"),
+    (dict(time=[0], amt=[1], addl=[-1], ii=[2]), "addl -1: give the number of further doses"),
+    (dict(time=[0], amt=[1], addl=[1.5], ii=[2]), "addl 1.5: give the number of further doses"),
+    (dict(time=[0], amt=[1], sex=["f"]), "'f' in the column 'sex': give a number, or leave the column out"),
     (dict(time=[0], amt=[1], rate=[-2]), "below zero"),
     (dict(time=[0], amt=[1], rate=[2], dur=[2]), "both rate and dur"),
     (dict(time=[0], amt=[1], addl=[3]), "give the interval of further doses in ii"),
@@ -223,8 +348,15 @@ def test_rows_that_cannot_be_read_are_refused_by_their_number(columns, message):
 
 
 def test_a_dose_into_an_unknown_compartment_is_refused():
-    with pytest.raises(my.Error, match="row 2 .* has cmt 3: `into` has 1, 2"):
-        my.dose_table(dict(time=[0, 1], amt=[1, 1], cmt=[1, 3]), {1: gut, 2: blood})
+    for unknown in (3, "gut", None):
+        with pytest.raises(my.Error, match=f"row 2 .* has cmt {unknown!r}: `into` has 1, 2"):
+            my.dose_table(dict(time=[0, 1], amt=[1, 1], cmt=[1, unknown]), {1: gut, 2: blood})
+
+
+@pytest.mark.parametrize("into", [[gut, blood], {}])
+def test_a_table_needs_states(into):
+    with pytest.raises(my.Error, match=r"give one state, or a dict \{cmt: state\}"):
+        my.dose_table(dict(time=[0], amt=[1]), into)
 
 
 def test_a_table_with_infusions_has_no_bioavailability():

@@ -55,6 +55,7 @@ class AnyModel(ComponentNames):
     aliases: Mapping[str, str] = {}  # components by other names
     outputs: Mapping[str, Any] = {}  # what a run computes from its results, as expressions
     constants: Mapping[Any, Any] = {}  # values of symbols in outputs that are no components
+    conserved: Mapping[str, str] = {}  # by state, a parameter: a sum with it, from which what is left out follows
     units: Mapping[str, str] = {}  # texts by component or output
     time_unit = ""
 
@@ -83,9 +84,9 @@ class AnyModel(ComponentNames):
         return ()
 
     def with_doses(self, *several: Any) -> AnyModel:
-        """The model whose states get these doses; here a refusal, of a model that is not recorded."""
-        raise Error(f"the model {self.name} is no recorded one, to which doses can be added{at(users_line())}: add "
-                    "them to the model that it is made of, or write them as stops")
+        """The model whose states get these doses; refused here, as the model is not recorded."""
+        raise Error(f"the model {self.name} is not recorded, and gets no doses{at(users_line())}: add them to the "
+                    "model that it is made of, or write stops in C++")
 
     def with_generated(self, values: Mapping[Any, Any]) -> AnyModel:
         """The model whose `generate` also sets these components; here a refusal, of one that is not recorded."""

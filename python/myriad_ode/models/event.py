@@ -91,10 +91,8 @@ def event(function: Written, *, name: str | None = None, direction: Direction = 
 
 
 class Stop:
-    """Times at which steps end, one after the other; `do` is what happens there. With `by_number` there is one time, a
-    function of `sym.stop_number`, which is infinite beyond the last, and `do` may read the number too."""
-
-    by_number = False
+    """Times at which steps end, one after the other; `do` is what happens there. A single time may be a function of
+    `sym.stop_number`, infinite beyond the last one; `do` may then read the number too."""
 
     def __init__(self, times: list[Any], every: Any, count: Any, name: str | None, do: Any) -> None:
         self.times, self.every, self.count, self.name, self.do = times, every, count, name, do
@@ -104,6 +102,11 @@ class Stop:
     def values(self) -> list[Any]:
         """All expressions that the times are computed from."""
         return [*self.times, *(e for e in (self.every, self.count) if e is not None)]
+
+    @property
+    def by_number(self) -> bool:
+        """Whether its time is a function of the number."""
+        return any(s is sym.stop_number for s in symbols_of(self.times))
 
 
 def stop(time: Written | Sequence[Written], *, every: Written | None = None, count: Written | None = None,

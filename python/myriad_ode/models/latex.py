@@ -21,8 +21,7 @@ if TYPE_CHECKING:
     from .trigger import Trigger
 
 _built_in = {"time": "t", "step": r"\Delta t", "next_step": r"\Delta t_{\mathrm{next}}", "phase": r"\mathrm{phase}",
-             "instance": r"\mathrm{instance}", "t_begin": r"t_{\mathrm{begin}}", "t_end": r"t_{\mathrm{end}}",
-             "stop_number": "n"}
+             "instance": r"\mathrm{instance}", "t_begin": r"t_{\mathrm{begin}}", "t_end": r"t_{\mathrm{end}}"}
 _directions = {"rising": " (rising)", "falling": " (falling)", "either": "", "none": " (switched off)"}
 _actions = {"end_phase": r"\text{end phase}", "end_instance": r"\text{end instance}"}
 _shown = 40  # lines, in a notebook
@@ -44,7 +43,7 @@ def _lines(model: Any, mass_matrix: Any) -> list[str]:
     def symbol(node: Node) -> str:
         kind, name = node.value
         if kind == "built-in":
-            return _built_in[name]
+            return _counter(model) if name == "stop_number" else _built_in[name]
         if kind == "event_count":
             return rf"N_{{\mathrm{{{plain(name)}}}}}"
         return _actions[name] if kind == "action" else names.get(name, rf"\mathrm{{{plain(name)}}}")
@@ -61,9 +60,14 @@ def _free_letter(model: Any, wanted: str) -> str:
     return next((letter for letter in wanted if letter not in taken), r"\ell")
 
 
+def _counter(model: Any) -> str:
+    """What the times of stops are counted by."""
+    return _free_letter(model, "nijm")
+
+
 def _content(model: Any, mass_matrix: Any, write: _Write) -> list[str]:
     """The lines of the model. `write` gets expressions, always in the same order."""
-    quantities, counter = dict(model.observed), _free_letter(model, "nijm")
+    quantities, counter = dict(model.observed), _counter(model)
     own = [one.as_given for one in model.triggers if one.as_given is not None]
     return [*_equations(model, mass_matrix, write),
             *(_summary(one, quantities[one.observed], write) for one in model.summaries),
@@ -151,7 +155,7 @@ def _event(one: Event, write: _Write) -> str:
 def _stop(one: Stop, write: _Write, n: str) -> str:
     times = [write(time) for time in one.times]
     if one.every is None:
-        at = rf"t = {', '.join(times)}"
+        at = rf"t = {', '.join(times)}" + (rf", \; {n} = 0, 1, \ldots" if one.by_number else "")
     else:
         endless = one.count.op == "constant" and one.count.value == float("inf")
         every, count = write(one.every), write(one.count)

@@ -13,7 +13,7 @@ from ..base.errors import Error
 
 Method = Literal["runge_kutta_4", "cash_karp", "tsitouras_5", "dormand_prince_5", "verner_7", "dormand_prince_8",
                  "verner_9", "rosenbrock_23", "rodas_5p", "euler_maruyama", "milstein", "stochastic_heun",
-                 "sra1", "sriw1", "dri1", "linearly_implicit_euler_maruyama"]  # of the library's headers, as tests say
+                 "sra1", "sriw1", "dri1", "linearly_implicit_euler_maruyama"]  # as in the headers; a test compares them
 Control = Literal["pi_control", "pid_control", "rms_norm", "mixed_scale", "automatic_first_step",
                   "tolerance_per_instance"]
 methods: tuple[str, ...] = get_args(Method)  #: the names of methods

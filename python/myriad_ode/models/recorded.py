@@ -13,12 +13,13 @@ from ..base import component_kinds as kinds
 from ..base.errors import Error, at, users_line
 from ..symbolic import symbols as sym
 from ..symbolic.evaluate import evaluate
-from ..symbolic.folding import add
+from ..symbolic.folding import add, constant, multiply
 from ..symbolic.functions import draws
 from ..symbolic.node import Node, symbols_of, text, walk
 from ..symbolic.table import tables_of
 from ..symbolic.whole_and_real import generic_problem
 from .any_model import AnyModel, names_of
+from .components import name_of
 from .dose_table import DoseTable
 from .doses import Doses
 from .event import Event, Stop, stop
@@ -177,7 +178,7 @@ class RecordedModel(AnyModel):
     def with_doses(self: Recorded, *several: Doses | DoseTable) -> Recorded:
         """The model whose states get these doses, from `my.doses(...)` or `my.dose_table(...)`, besides what the model
         itself does."""
-        line, made, given, reader = users_line(), self.changeable(), self._as_given, self._reader
+        line, made, given, reader = users_line(), self.changeable(), self._as_given, copy.copy(self._reader)
         made.line = line
         for part in ("rhs", "events", "stops", "triggers", "noise", "observed", "initialise", "hidden"):
             setattr(made, part, getattr(given, part))
@@ -194,23 +195,43 @@ class RecordedModel(AnyModel):
                         "at=...)")
         stops = []
         for one in [part for table in several for part in table.parts]:
-            target = reader.target(self.aliases.get(one.into, one.into), "doses")
-            if target not in made.equations:
-                raise Error(f"doses go into {target.value[1]}{at(one.line)}, which is no state of the model: choose "
-                            f"one of {', '.join(self.states)}")
+            reader.line = one.line
+            given_name = name_of(one.into)
+            target = sym.symbol("state", self.aliases.get(given_name, given_name))
+            shares = self._shares(target.value[1], one.line)
             one = one.read(reader.expression)
-            names += [symbol.value[1] for symbol in symbols_of(one.values)]
-            made.equations[target] = add(made.equations[target], one.inflow())
-            stops += one.stops(target, free_name)
-            at_start, at_end = one.hooks()
+            for symbol in symbols_of(one.values):
+                kind, name = symbol.value
+                if kind == "state" or kind not in kinds.valued:
+                    raise Error(f"doses{at(one.line)} depend on {name}: they are made of parameters, shared values and "
+                                "accessories; write a my.stop where an amount depends on more")
+                names.append(name)
+            for state, share in zip(made.equations, shares):
+                if share != 0:
+                    made.equations[state] = add(made.equations[state], multiply(constant(share), one.inflow()))
+            at_start = one.at_start()
+            made.hidden |= {accessory.value[1] for accessory in at_start}
             made.initialise = [*made.initialise, *reader.assignments(at_start, "initialise")]
-            made.finalise = [*made.finalise, *reader.assignments(at_end, "finalise")]
+            stops += one.stops(target, free_name)
         made.stops = [*made.stops, *reader.stops(stops)]
         made.rhs = list(made.equations.values())
         made._collect(list(made.equations))
         made._make_jumps_exact(given.name or None, self.mass_matrix is not None)
         made._check()
         return made
+
+    def _shares(self, name: str, line: tuple[str, int] | None) -> list[float]:
+        """What of an inflow into a state each equation gets: the state's column of the mass matrix. Refuses doses into
+        what is no state, or one that follows from others or that others follow from."""
+        mass = np.eye(len(self.states)) if self.mass_matrix is None else self.mass_matrix
+        columns = {state: column for state, column in zip(self.states, mass.T.tolist()) if any(column)}
+        if name not in columns:
+            why = "whose derivative is in no equation" if name in self.states else "which is no state of the model"
+            raise Error(f"doses go into {name}{at(line)}, {why}: choose one of {', '.join(columns)}")
+        if name in self.conserved:
+            raise Error(f"doses go into {name}{at(line)}, and the conserved sum {self.conserved[name]} would stay as "
+                        "it is: read the file without reduce=True")
+        return columns[name]
 
     def with_generated(self: Recorded, values: ByComponent) -> Recorded:
         """The model whose `generate` also sets these components of the instances of a study."""

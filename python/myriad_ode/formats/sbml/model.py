@@ -128,6 +128,7 @@ class SbmlModel(Model):
                          tie_seed=happening.tie_seed)
         self.line, self.hidden = users_line(), frozenset([*self.accessories, *self.integer_accessories])
         self.constants = constants
+        self.conserved = {} if reduction is None else reduction.sums
         self.defaults: dict[str, Any] = {**self.shared_values}
         self.defaults |= {n: e for n, e in defaults.items() if n in self.states or n in self.parameters}
         for state in self.states:

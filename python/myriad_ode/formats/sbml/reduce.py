@@ -65,11 +65,12 @@ def _changed_by(semantics: Semantics, event: Any) -> set[str]:
 
 class Reduction:
     """What takes the place of the states that are left out: `values` by their symbols, and the parameters of the sums,
-    whose values at the start are in the model's defaults."""
+    whose values at the start are in the model's defaults. `sums` has such a parameter for each state in a sum."""
 
     def __init__(self, semantics: Semantics) -> None:
         self.values: dict[Any, Any] = {}
         self.parameters: list[Any] = []
+        self.sums: dict[str, str] = {}
         for name, weights in dependent(semantics).items():
             quantity = semantics.quantities[name]
             start = semantics.defaults.get(semantics.names[name])
@@ -81,6 +82,7 @@ class Reduction:
             component = semantics.names[f"conserved {name}"] = semantics.component_name(f"conserved_{name}")
             total = sym.symbol("parameter", component)
             self.parameters.append(total)
+            self.sums |= {semantics.names[other]: component for other in weights}
             at_start, = rebuilt([semantics.amount(name)], folded, {quantity.symbol: number(start)})
             semantics.defaults[component] = subtract(at_start, others)
             del semantics.defaults[semantics.names[name]]
