@@ -10,7 +10,7 @@
 
 namespace myriad {
 
-/// A Runge-Kutta method for Ito equations with any noise: fixed steps, weak order 2, and 3 without noise. It takes no
+/// A Runge-Kutta method for Ito equations with any noise: fixed steps, weak order 2, and 3 without noise. It needs no
 /// derivatives. It is for means over many paths alone: of an increment over a step it takes no more than in which of
 /// six intervals that lies, and so paths do not converge. Source: Debrabant and Roessler, Appl. Numer. Math. 59 (2009)
 /// 582-594; a sign for each pair of processes as in Kloeden and Platen, Numerical Solution of Stochastic Differential

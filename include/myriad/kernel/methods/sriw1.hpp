@@ -9,7 +9,7 @@
 
 namespace myriad {
 
-/// A Runge-Kutta method for Ito equations with diagonal noise: fixed steps, strong order 3/2. It takes no derivatives.
+/// A Runge-Kutta method for Ito equations with diagonal noise: fixed steps, strong order 3/2. It needs no derivatives.
 /// Source: Roessler, SIAM J. Numer. Anal. 48 (2010) 922-952, scheme SRIW1; its SRI1 is another, of order 1.
 struct sriw1 {
     static constexpr int stages = 2;

@@ -27,7 +27,7 @@ struct trial_step<Method, S, n> {
     MYRIAD_FUNCTION const vec<S, n>& slope_start() const { return slope; }
 };
 
-/// What I / h - J is by the terms of a Rosenbrock method.
+/// Of a Rosenbrock method what gives it the matrix I / h - J.
 struct whole_step {
     struct coefficients {
         double gamma = 1;
