@@ -4,6 +4,8 @@
 import numpy as np
 
 # snippet: patients
+import matplotlib.pyplot as plt
+
 import myriad_ode as my
 
 gut, blood = my.states("gut blood")
@@ -16,15 +18,15 @@ population = {absorption: my.lognormal(1.0, 0.3), weight: my.normal(70, 10),
               clearance: 5 * my.exp(of_clearance) * (weight / 70)**0.75,
               volume: 40 * my.exp(of_volume) * (weight / 70)}
 
-times, percentiles, axes = np.linspace(0, 48, 97), [0.05, 0.5, 0.95], None
+times, percentiles = np.linspace(0, 48, 97), [0.05, 0.5, 0.95]
+_, axes = plt.subplots(figsize=(7, 3.6))
 for group in (50, 150):
     patients = my.study(drug, {dose: group, **population}, draws=20_000, start={gut: 0, blood: 0}, time=(0, 48),
                         samples=times, keep=dict(end=[], samples=False, random=False),
                         reduce=my.reduce.quantiles("blood_sample", percentiles, my.linspace(0, 400, 401)))
-    axes = my.plots.bands(times, patients.run()["blood_sample_quantiles"], percentiles, axes=axes,
-                          color=f"C{group // 100}", label=f"90 % at {group} mg", xlabel="hours",
-                          ylabel="drug in the blood (mg)")
-axes.figure.savefig("patients.png")
+    my.plots.bands(times, patients.run()["blood_sample_quantiles"], percentiles, axes=axes, color=f"C{group // 100}",
+                   label=f"90 % at {group} mg", xlabel="hours", ylabel="drug in the blood (mg)")
+plt.savefig("patients.png")
 # end of snippet
 
 assert np.isfinite(patients.run()["blood_sample_quantiles"]).all()
