@@ -19,7 +19,7 @@ population = {absorption: my.lognormal(1.0, 0.3), weight: my.normal(70, 10),
               volume: 40 * my.exp(of_volume) * (weight / 70)}
 
 times, percentiles = np.linspace(0, 48, 97), [0.05, 0.5, 0.95]
-_, axes = plt.subplots(figsize=(7, 3.6))
+_, axes = plt.subplots(figsize=(7, 3.6), layout="constrained")
 for group in (50, 150):
     patients = my.study(drug, {dose: group, **population}, draws=20_000, start={gut: 0, blood: 0}, time=(0, 48),
                         samples=times, keep=dict(end=[], samples=False, random=False),
