@@ -151,8 +151,10 @@ def test_random_values_in_a_grid_are_those_of_a_sweep():
     first = drawn(my.grid({k: values}, others))
     assert len(set(first)) == 50
     np.testing.assert_array_equal(first, drawn({k: values, **others}))
-    with pytest.raises(my.Error, match=r"`uniform\(0, k\)` is given in a sweep.*draw it in generate="):
-        my.study(duffing(), {k: values, B: 0.3, x: my.uniform(0, k)}, start={v: 0}, time=(0, 1))
+    with pytest.raises(my.Error, match=r"`uniform\(0, k\)` is drawn between bounds that differ.*my.study in a dict"):
+        my.grid({k: values}, {x: my.uniform(0, k)})
+    between = drawn({k: values, B: 0.3, x: my.uniform(0, k)})
+    assert (between[1:] > 0).all() and (between <= np.linspace(0, 1, 50)).all() and len(set(between)) == 50
 
 
 def test_reductions_are_numpys():
@@ -418,8 +420,8 @@ def test_messages_of_axes():
         my.study(duffing(), my.grid({k: 1, B: [1, 2]}), start={x: 1, v: 0}, time=(0, 1))
     with pytest.raises(my.Error, match="'k' has 3 values and 'x' has 2"):
         my.study(duffing(), {k: [1, 2, 3], B: 1}, start={x: [1, 2], v: 0}, time=(0, 1))
-    with pytest.raises(my.Error, match=r"generate=\{k: exp\(normal\(0, 1\)\)\}"):
-        my.study(duffing(), {k: my.exp(my.normal(0, 1)), B: 1}, draws=10, start={x: 1, v: 0}, time=(0, 1))
+    with pytest.raises(my.Error, match=r"exp\(normal\(0, 1\)\).*my.study in a dict"):
+        my.grid({k: my.exp(my.normal(0, 1)), B: 1})
 
 
 def test_an_exception_of_the_progress_function_ends_the_run():

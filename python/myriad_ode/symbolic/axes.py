@@ -87,6 +87,6 @@ def drawn(value: Any) -> Any:
     if not isinstance(value, Node) or value.op not in draws:
         return value
     if any(bound.op != "constant" for bound in value.args):
-        raise Error(f"`{value}` is given in a sweep{at(users_line())}: give numbers, or draw it in generate= of the "
-                    "model")
+        raise Error(f"`{value}` is drawn between bounds that differ{at(users_line())}: give it to my.study in a dict, "
+                    "or give numbers")
     return Random(value.op, *(float(bound.value) for bound in value.args))
