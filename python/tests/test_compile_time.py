@@ -79,7 +79,7 @@ nvrtc.library().compile(nvrtc.source_of(*ring.source(), "myriad::rodas_5p", "dou
 
 
 @pytest.mark.skipif(gxx is None or nvrtc.find() is None, reason="there is no g++, or no NVRTC")
-@pytest.mark.parametrize("states, most", [(20, 3), (64, 8)])
+@pytest.mark.parametrize("states, most", [(20, 3), pytest.param(64, 8, marks=pytest.mark.thorough)])
 def test_nvrtc_compiles_stiff_networks_in_seconds(tmp_path, states, most):
     """1.4 and 4.4 times the reference: 3.1 and 9.9 s. More than 10 and 60 s would be too long."""
     assert takes_at_most(most, lambda attempt: [sys.executable, "-c", NETWORK, str(states)], tmp_path)
