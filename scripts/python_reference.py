@@ -32,8 +32,8 @@ PAGES = {
                       "models.cpp_model", "formats.sbml.model", "models.units", "formats.xpp.model"]),
     "python_fit": ("Python: sensitivities and fits", "Derivatives of results, and what is fitted to data by them.",
                    ["models.sensitivities", "results.sensitivities", "gradients.batched", "inference.least_squares",
-                    "inference.fitting", "inference.profile", "inference.experiments", "inference.likelihood",
-                    "inference.noise_models", "inference.priors", "formats.petab.problem", "inference.designs"]),
+                    "inference.objective", "inference.fitting", "inference.profile", "inference.experiments",
+                    "inference.likelihood", "inference.noise_models", "inference.priors", "formats.petab.problem", "inference.designs"]),
     "python_dynamics": ("Python: attractors", "What orbits come to: attractors, basins, steady states, hysteresis.",
                         ["dynamics.attractors", "dynamics.continuation", "dynamics.hysteresis",
                          "dynamics.steady_states"]),
@@ -46,7 +46,7 @@ PAGES = {
 RETURNED = {"results.report": ["Report"], "sweeps.sweep": ["Sweep"], "symbolic.axes": ["Axis"],
             "symbolic.table": ["Table"], "models.dose_table": ["DoseTable"],
             "studies.reduce": ["Reduction"], "models.tangents": ["WithTangents"],
-            "results.run_plots": ["Plots"], "inference.profile": ["Profile"],
+            "results.run_plots": ["Plots"], "inference.profile": ["Profile"], "inference.objective": ["Objective"],
             "inference.designs": ["Design", "Indices"], "results.gpu_results": ["DeviceArray", "DeviceResults"],
             "symbolic.expression": ["Expression", "Condition"]}
 

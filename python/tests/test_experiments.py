@@ -4,6 +4,7 @@ model is a drug that is absorbed and eliminated, whose solution is known."""
 
 import numpy as np
 import pytest
+from differences import by_differences
 
 import myriad_ode as my
 
@@ -30,16 +31,6 @@ def measured(doses=(25, 50, 100), noise=0.3, e=None, seed=1, times=times):
         found.append(my.experiment({"t": t, blood: level(t, dose, e=own) + noise * random.standard_normal(t.size)},
                                    start={gut: dose}, name=f"{dose} mg"))
     return found
-
-
-def by_differences(f, at, d=1e-3):
-    """Central differences of fourth order, relative to each component."""
-    found = []
-    for i in range(len(at)):
-        step = np.zeros(len(at))
-        step[i] = d * abs(at[i])
-        found.append((8 * (f(at + step) - f(at - step)) - (f(at + 2 * step) - f(at - 2 * step))) / (12 * step[i]))
-    return np.stack(found, axis=-1)
 
 
 def test_shared_components_are_recovered_from_experiments_of_several_doses_and_lengths():

@@ -9,6 +9,7 @@ import myriad_ode as my
 
 v1 = pytest.importorskip("petab.v1")
 import sbml_models as sbml  # noqa: E402, which needs libsbml
+from differences import by_differences  # noqa: E402
 
 # A is lost at the rate k and made at the rate b: A = b / k + (A0 - b / k) exp(-k t).
 K, SCALE, B, A0 = 0.7, 2.5, 0.2, 3.0
@@ -78,16 +79,6 @@ def petabs_likelihood(path, problem, values, **options):
     theirs.parameter_df.loc[list(problem.free), "nominalValue"] = values
     return v1.calculate_llh(theirs.measurement_df, problem.simulate(values, **options), theirs.observable_df,
                             theirs.parameter_df)
-
-
-def by_differences(f, at, d=1e-3):
-    """Central differences of fourth order, relative to each component."""
-    found = []
-    for i in range(len(at)):
-        step = np.zeros(len(at))
-        step[i] = d * abs(at[i])
-        found.append((8 * (f(at + step) - f(at - step)) - (f(at + 2 * step) - f(at - 2 * step))) / (12 * step[i]))
-    return np.stack(found, axis=-1)
 
 
 def test_a_problem_is_fitted_to_what_made_its_measurements(tmp_path):

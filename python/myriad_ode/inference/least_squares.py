@@ -116,15 +116,6 @@ class LeastSquares(Objective):
         with np.errstate(over="ignore", invalid="ignore"):
             return 0.5 * np.sum(residuals * residuals, axis=1), residuals, jacobian
 
-    def residuals(self, values: Values) -> Array:
-        """The residuals of one set of values, or rows of those of several; half the sum of squares is the loss."""
-        return self._once(values, 1)
-
-    def jacobian(self, values: Values) -> Array:
-        """The derivatives of the residuals by the free components, one row for each residual."""
-        self.check_derivatives()
-        return self._once(values, 2)
-
     def _by_adjoint(self, adjoint: Adjoint, values: Values) -> tuple[Any, Array]:
         """The loss and its gradient, once for both of the same values."""
         sets = self._sets(values)

@@ -358,22 +358,11 @@ class Likelihood(Objective):
         return (f"the likelihood of '{self._lost_to}' is zero at all starts, as where the model is zero or negative "
                 "and noise is proportional or log-normal: leave such times out, or give my.noise_models.combined")
 
-    def residuals(self, values: Values) -> Array:
-        """The residuals of one set of values, or rows of those of several; half the sum of squares is the loss. Raises
-        `Error` if the loss is no sum of squares."""
-        self._refuse_residuals()
-        return self._once(values, 1)
-
-    def jacobian(self, values: Values) -> Array:
-        """The derivatives of the residuals by the free components, one row for each residual."""
-        self._refuse_residuals()
-        self.check_derivatives()
-        return self._once(values, 2)
-
-    def _refuse_residuals(self) -> None:
-        if self._is_likelihood:
-            raise Error("noise models, limits and priors make the loss a likelihood, which is no sum of squares: use "
-                        "loss and gradient")
+    @property
+    def why_no_residuals(self) -> str:
+        """Why the loss is no sum of squares; empty if it is one."""
+        return ("noise models, limits and priors make the loss a likelihood, which is no sum of squares"
+                if self._is_likelihood else "")
 
     def curves(self, values: Values) -> dict[str, list[Curve]]:
         """Data and model of each quantity in each experiment that has it, for one set of values; the model at times

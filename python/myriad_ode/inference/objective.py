@@ -88,6 +88,11 @@ class Objective:
         """Data and model of each quantity in each experiment that has it, for one set of values."""
         raise Error(f"{type(self).__name__} has no picture of data and model: my.fit has one")
 
+    @property
+    def why_no_residuals(self) -> str:
+        """Why the loss is no sum of squares; empty if it is one."""
+        return ""
+
     def why_none(self) -> str:
         """Why there may be no loss, and what to do, where `evaluate` has found none at any start."""
         return ("no start of the fit has a solution up to the last time of the data: look at one by "
@@ -117,6 +122,20 @@ class Objective:
     def loss(self, values: Values) -> Any:
         """What is minimised: a number, or one for each set."""
         return self._once(values, 0)
+
+    def residuals(self, values: Values) -> Array:
+        """The residuals of one set of values, or rows of those of several; half the sum of squares is the loss, but for
+        a constant. Raises `Error` if the loss is no sum of squares."""
+        if self.why_no_residuals:
+            raise Error(f"{self.why_no_residuals}: use loss and gradient")
+        return self._once(values, 1)
+
+    def jacobian(self, values: Values) -> Array:
+        """The derivatives of the residuals by the free components, one row for each residual."""
+        if self.why_no_residuals:
+            raise Error(f"{self.why_no_residuals}: use loss and gradient")
+        self.check_derivatives()
+        return self._once(values, 2)
 
     def gradient(self, values: Values) -> Array:
         """The derivatives of the loss by the free components."""

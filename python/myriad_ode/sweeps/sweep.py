@@ -42,8 +42,8 @@ def _numbers(name: str, values: Values, line: tuple[str, int] | None) -> Array |
     if isinstance(values, Axis):
         return values
     if isinstance(values, Node):
-        raise Error(f"the values of {name} are the expression `{values}`{at(line)}: give it to my.study in a dict, and "
-                    "not in a grid")
+        raise Error(f"the values of {name} are the expression `{values}`{at(line)}: give it to my.study in a dict, not "
+                    "in a grid")
     refuse_masked(values, name)
     try:
         array = as_numbers(values)

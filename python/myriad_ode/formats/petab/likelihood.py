@@ -198,22 +198,11 @@ class PetabLikelihood(Objective):
                 o, self._known(o, run, instances, sets))).sum(axis=1) for o in self._experiment.observables)
         return found[0] if np.ndim(values) == 1 else found
 
-    def residuals(self, values: Values) -> Array:
-        """The residuals of one set of values, or rows of those of several: half the sum of squares is the loss but for
-        a constant. Raises `Error` where noise is estimated, as the likelihood is no sum of squares."""
-        self._refuse_residuals()
-        return self._once(values, 1)
-
-    def jacobian(self, values: Values) -> Array:
-        """The derivatives of the residuals by the free components, one row for each residual."""
-        self._refuse_residuals()
-        self.check_derivatives()
-        return self._once(values, 2)
-
-    def _refuse_residuals(self) -> None:
-        if self.noise_is_estimated:
-            raise Error("the noise depends on what is estimated, and the likelihood is no sum of squares: use loss and "
-                        "gradient")
+    @property
+    def why_no_residuals(self) -> str:
+        """Why the loss is no sum of squares; empty if it is one."""
+        return ("the noise depends on what is estimated, and the likelihood is no sum of squares"
+                if self.noise_is_estimated else "")
 
     def _measured(self, o: Observed) -> Array:
         return self._experiment.measured[o.rows]
