@@ -42,8 +42,8 @@ MYRIAD_FUNCTION R rounding_weight(int c) {
 /// from values closer to zero. A few roundings of t and of states of the given sizes, times the derivatives. One
 /// derivative does for all of them, with weights, so that x - y has a rounding error though its two terms cancel.
 /// That of a denormal state is two to four thousand of the smallest numbers, as each stage of a step rounds: what
-/// decays until it is zero has not crossed it. Zero where the functions have no finite derivative, or are constant but for
-/// jumps.
+/// decays until it is zero has not crossed it. Zero where the functions have no finite derivative, or are constant but
+/// for jumps.
 template <class Model, class R>
 MYRIAD_FUNCTION vec<R, n_event<Model>> compute_roundings(const R& t, const vec<R, n_state<Model>>& y,
                                                          const vec<R, n_state<Model>>& size,
