@@ -272,3 +272,12 @@ def test_triggers_have_the_derivatives_of_differences(lag):
                         for step in (1e-6, -1e-6))
         for s in (x, y, z):
             assert found.sensitivity[s, k] == pytest.approx((above[s] - below[s]) / 2e-6, abs=1e-6)
+
+
+@pytest.mark.parametrize("step", [0.01, 0.02, 0.005, 0.003, 0.1])
+def test_a_trigger_on_whose_surface_each_step_ends_is_neither_lost_nor_an_accumulation(step):
+    clock, count = my.states("clock count")
+    model = my.model({clock: 1, count: 0}, triggers=my.trigger(clock >= 0.01, do={clock: 0, count: count + 1}))
+    run = my.solve(model, start={clock: 0, count: 0}, time=(0, 2.005), method="dormand_prince_5", rtol=1e-9, atol=1e-9,
+                   maximum_step=step, step=step)
+    assert run.status[0] == "success" and run["count"][0] == 200 and run["clock"][0] == pytest.approx(0.005, abs=1e-12)

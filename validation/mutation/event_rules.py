@@ -120,7 +120,7 @@ MUTATIONS = {
                                "the host may turn the flow round between phases"),
     "flat_heading": ("event_functions.hpp", "return abs(slope) > R(0) && abs(slope) < infinity_of<R>;", "return true;",
                      "where the slope does not tell, the first signs ahead do"),
-    "hook_moves_nothing": ("side_tracker.hpp", "if (!keeps) sides.put_side(j, i, is_there ? R(0) : sign_of(now));", "",
+    "hook_moves_nothing": ("side_tracker.hpp", "sides.put_side(j, i, is_there ? R(0) : sign_of(now));", "",
                            "a function that a hook moved is on the side where it is"),
     "hook_keeps_surface": ("side_tracker.hpp", "is_there ? R(0) : sign_of(now)", "sign_of(now)",
                            "one that a hook puts on the surface has an open side"),

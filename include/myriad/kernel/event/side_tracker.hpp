@@ -69,7 +69,8 @@ struct side_tracker {
 
     /// Updates the sides after a hook changed inputs of event functions, whose values were `before`. A function that
     /// the hook moved is on the side where it is now or, on the surface, where the slope at the next step leads.
-    /// One at a jump keeps the side beyond it, which its value here does not show, until `update_after_events`.
+    /// One at a jump keeps the side beyond it, which its value here does not show, until `update_after_events`, or
+    /// until an action of a stop or a trigger, which come after those of events, moves it.
     MYRIAD_FUNCTION void update_after_hook(const mask& lanes, const values& before, const fired& events) const {
         auto& e = sides.e;
         const values g = detail::evaluate_events<Model>(sides.s.now(), sides.s.data.y, sides.s.data);
@@ -78,9 +79,12 @@ struct side_tracker {
             bool undefined = false;
             flags moved;
             moved.clear();
+            const bool events_are_over = acts_after_events && !events.which.of_lane(i).any_of();
             MYRIAD_UNROLL
             for (int j = 0; j < MYRIAD_LENGTH(m); ++j)
-                moved.set(j, !events.which.get(j, i) && !own.on_jump[j] && get_lane(g[j], i) != get_lane(before[j], i));
+                moved.set(j, !events.which.get(j, i) && (events_are_over || !own.on_jump[j]) &&
+                                 get_lane(g[j], i) != get_lane(before[j], i));
+            if (acts_after_events) own.on_jump = own.on_jump & ~moved;
             const reals rounding = sides.roundings_if_needed(i, get_lanes<R>(g, i), moved);
             MYRIAD_UNROLL
             for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
@@ -91,7 +95,9 @@ struct side_tracker {
                 // Right after its event a function that a hook hardly moves is as good as on the surface.
                 const R residual = min(R(2) * abs(then), sides.args.event[j].tolerance);
                 const bool keeps = is_there ? was_there : !e.left.get(j, i) && abs(now) <= residual;
-                if (!keeps) sides.put_side(j, i, is_there ? R(0) : sign_of(now));
+                if (keeps) continue;
+                sides.put_side(j, i, is_there ? R(0) : sign_of(now));
+                if (acts_after_events) e.left.set(j, i, e.left.get(j, i) || !is_there);
             }
             e.flags.set(e.undefined, i, undefined);
             sides.update_in_question(i);
@@ -113,6 +119,8 @@ struct side_tracker {
     }
 
 private:
+    static constexpr bool acts_after_events = has_triggers<Model> || has_stops<Model>;
+
     static MYRIAD_FUNCTION flags negative(const reals& g) {
         flags below;
         below.clear();
