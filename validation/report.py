@@ -194,7 +194,11 @@ def write(comments, rows, images, command):
             "its node c). It then compiles the kernels from headers with one line changed (the other direction of "
             "events, a lost action, a slope kept after a jump, a rejected step accepted, and more: "
             "`validation/mutation/logic.py`), and each must fail this validation. `scripts/test.sh --all` runs the "
-            "first part, and four changes of the second.", ""]
+            "first part, and four changes of the second. `validation/mutation/event_rules.py --package DIR` leaves "
+            "out one rule of event location at a time in the interpreter of the Python package, in packs and in "
+            "single lanes, and says which test finds it first, with `--build DIR` in C++ test programs; that takes "
+            "minutes for each rule, and so it is run by hand. `validation/mutation/event_rules.txt` has what was "
+            "found, and when.", ""]
     return "\n".join(out)
 
 

@@ -31,6 +31,7 @@ benchmark_case van_der_pol_case();
 /// Hodgkin and Huxley's axon, and 8, 16 and 32 of Kuramoto's oscillators.
 std::vector<benchmark_case> heavy_cases();
 benchmark_case noise_case();
+benchmark_case delays_case();
 benchmark_case keller_miksis_case();
 benchmark_case relief_valve_case();
 benchmark_case duffing_events_case();

@@ -154,7 +154,7 @@ struct slow_valve {
     enum integer_accessory { closed, n_integer_accessory = 1 + queue::n_integer_accessory };
     enum event { full, n_event };
     enum stop { due, n_stop };
-    enum delayed { close };
+    enum later { close };
 
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>&, const auto& p) {

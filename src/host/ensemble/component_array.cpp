@@ -98,6 +98,7 @@ template class component_array<double>;
 template class component_array<float>;
 template class component_array<std::int64_t>;
 template class component_array<std::int32_t>;
+template class component_array<std::uint32_t>;
 template class component_array<std::int16_t>;
 template class component_array<std::uint8_t>;
 template class component_array<status>;

@@ -170,6 +170,35 @@ myriad::status ensemble_data<R>::status_of(std::int64_t i) const {
 }
 
 template <class R>
+void ensemble_data<R>::keep_history(std::int32_t slots, std::int32_t terms) {
+    if (shape->n_kept == 0 || (slots == history_slots && terms == history_terms)) return;
+    require(untouched || history_slots == 0, "the past of these instances is kept as ", history_slots, " steps of ",
+            history_terms, " numbers, but this call would keep ", slots, " of ", terms, cure,
+            "go on with the same method and the same history_steps, or call restart() to begin again");
+    const auto numbers = detail::history_numbers(slots, shape->n_kept, terms);
+    history = {static_cast<int>(numbers), size, R(0)};
+    history_jumps = {slots, size, std::uint32_t{0}};
+    history_place = {2, size, std::int32_t{0}};
+    history_slots = slots;
+    history_terms = terms;
+    if (!pinned()) return;
+    history.pin(pinned_for);
+    history_jumps.pin(pinned_for);
+    history_place.pin(pinned_for);
+}
+template <class R>
+detail::history_arguments<R> ensemble_data<R>::history_pointers() {
+    return {history.data(), history_jumps.data(), history_place.data(), history_slots, history_terms};
+}
+template <class R>
+double ensemble_data<R>::history_bytes(const model_shape& shape, std::int64_t size, std::int32_t slots,
+                                       std::int32_t terms) {
+    if (shape.n_kept == 0) return 0;
+    const auto numbers = static_cast<double>(detail::history_numbers(slots, shape.n_kept, terms));
+    return static_cast<double>(size) * (sizeof(R) * numbers + sizeof(std::uint32_t) * slots + 2 * sizeof(std::int32_t));
+}
+
+template <class R>
 void ensemble_data<R>::restart() {
     phases_asked = 0;
     if (untouched) return;
@@ -181,6 +210,7 @@ void ensemble_data<R>::restart() {
             if (of.kind == array_kind::bookkeeping && value == value) array.fill_instances(first, last, value);
         };
         for_each_instance_array<R>(*shape, clear, *this);
+        history_place.fill_instances(first, last, std::int32_t{0});
     });
     ended_before.clear();
 }
@@ -188,6 +218,9 @@ template <class R>
 void ensemble_data<R>::pin(int gpu) {
     for_each_instance_array<R>(
         *shape, [gpu](const array_properties&, auto, auto& array) { array.pin(gpu); }, *this);
+    history.pin(gpu);
+    history_jumps.pin(gpu);
+    history_place.pin(gpu);
 }
 
 namespace {
@@ -269,6 +302,7 @@ detail::argument_head<R> inputs_in(ensemble_data<R>& data) {
     all.common_t_begin = data.common_begin;
     all.common_t_end = data.common_end;
     all.shared = {data.shared.data(), data.shared_integer.data()};
+    all.history = data.history_pointers();
     return all;
 }
 template detail::argument_head<double> inputs_in(ensemble_data<double>&);

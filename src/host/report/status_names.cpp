@@ -10,7 +10,8 @@ namespace myriad {
 const char* name_of(status s) {
     constexpr const char* names[] = {"not_started",       "success",        "stopped_by_event", "stopped_by_user",
                                      "max_steps",         "step_underflow", "not_finite",       "event_accumulation",
-                                     "singular_jacobian", "invalid_input",  "queue_overflow",   "interrupted"};
+                                     "singular_jacobian", "invalid_input",  "queue_overflow",   "history_overflow",
+                                     "invalid_delay",     "interrupted"};
     static_assert(std::size(names) == status_count, "a status has no name");
     return names[static_cast<int>(s)];
 }

@@ -3,6 +3,7 @@
 #include "myriad/host/solve/prepared_call.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -12,6 +13,12 @@
 namespace myriad::host::inline MYRIAD_ABI {
 
 namespace {
+
+/// Steps of the past that a call keeps of each instance: as many as asked for, up to a power of two.
+std::int32_t history_slots(const options& o, const call_facts& facts) {
+    const std::int64_t wanted = o.history_steps > 0 ? o.history_steps : facts.adaptive() ? 256 : 1024;
+    return static_cast<std::int32_t>(std::bit_ceil(static_cast<std::uint64_t>(wanted)));
+}
 
 step_sizes steps_of(const call_facts& facts) { return facts.adaptive() ? step_sizes::kept : step_sizes::fixed; }
 
@@ -34,6 +41,9 @@ void add_memory_of_call(memory_need& need, const model_shape& shape, std::int64_
     if (!o.record.empty()) need.add("records", record_data<R>::bytes_for(o.record, o.phases, size));
     need.add("sample times", static_cast<double>(sizeof(R) * o.samples.times_of_instances.size()));
     ensemble_data<R>::add_memory_of_call(need, shape, size, there, o, steps_of(facts), facts.scales_tolerances);
+    if (there == nullptr || there->history_slots == 0)
+        need.add("the past of delays",
+                 ensemble_data<R>::history_bytes(shape, size, history_slots(o, facts), facts.history_terms));
     if (!o.samples.empty() && !has_samples) need.add("samples", sample_data<R>::bytes_for(o.samples, size));
 }
 
@@ -50,6 +60,10 @@ prepared_call<R>::prepared_call(ensemble_data<R>& data, sample_data<R>& samples,
     arguments.size = data.size;
     arguments.first_index = data.first_index;
     data.fill_pointers(arguments, o.counting, steps_of(facts));
+    require(data.shape->n_kept > 0 || o.history_steps == 0, named_option("history_steps"), " is ", o.history_steps,
+            ", but the model has no delays, whose past would be kept", cure, "leave it out");
+    data.keep_history(history_slots(o, facts), facts.history_terms);
+    arguments.history = data.history_pointers();
     fill_domain();
     arguments.shared = {data.shared.data(), data.shared_integer.data()};
     fill_records(records);

@@ -61,6 +61,11 @@ public:
         if (place_.at > 0) move();
         const inputs<Model, R>& p = data_;
         const R t = data_.t;
+        if constexpr (has_delays<Model>) {
+            detail::recall<Model>(t, data_.y, p);
+            for (int j = 0; j < n_delayed<Model>; ++j)
+                take(model_function::rhs, 0, shown_kind::result, j, detail::lag_of<Model>(j, t, data_.y, p));
+        }
         take_all(model_function::rhs, Model::template rhs<R>(t, data_.y, p), MYRIAD_LENGTH(n_state<Model>),
                  shown_kind::state);
         if constexpr (has_events<Model>)

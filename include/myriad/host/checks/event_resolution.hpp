@@ -15,7 +15,7 @@ namespace myriad::host::inline MYRIAD_ABI {
 
 /// Whether instances can be asked. With `initialise` in the model they cannot, as `events` must not be called before.
 template <class Model>
-inline constexpr bool event_resolution_is_known = has_events<Model> && !has_initialise<Model>;
+inline constexpr bool event_resolution_is_known = has_events<Model> && !has_initialise<Model> && !has_delays<Model>;
 
 /// What rounding leaves of an event function, in its unit, by what an instance says: `g` is its value at p = (t, y),
 /// with the derivative p dg/dp, and `at_zero` its value at zero.

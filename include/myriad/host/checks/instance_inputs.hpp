@@ -3,11 +3,47 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "myriad/kernel/model/lane.hpp"
+#include "myriad/kernel/model/recall.hpp"
 #include "myriad/kernel/state/kernel_arguments.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
+
+/// Its state, and the time at which it begins.
+template <class Model, class R>
+vec<R, n_state<Model>> state_of(const argument_head<R>& a, std::int64_t i) {
+    vec<R, n_state<Model>> y;
+    for (int c = 0; c < MYRIAD_LENGTH(n_state<Model>); ++c) y[c] = a.state[c * a.size + i];
+    return y;
+}
+template <class R>
+R begin_of(const argument_head<R>& a, std::int64_t i) {
+    return a.t_begin != nullptr ? a.t_begin[i] : a.common_t_begin;
+}
+
+/// A past in which the states were always what they are at the start: for checks before an integration.
+template <class Model, class R>
+void put_constant_past(inputs<Model, R>& p, const argument_head<R>& a, std::int64_t i) {
+    if constexpr (has_delays<Model>) {
+        constexpr int slots = 2, steps = slots * history_fields(n_kept<Model>, 0);
+        thread_local R ring[steps + n_kept<Model>] = {};  // the inputs are used at once
+        detail::for_each_kept_state<Model>([&](auto at, int state) { ring[steps + at] = a.state[state * a.size + i]; });
+        p.past = {};  // without steps
+        p.past.ring = ring;
+        p.past.stride = 1;
+        p.past.slots = slots;
+        p.past.row = history_fields(n_kept<Model>, 0);
+        p.past.reached = std::numeric_limits<R>::infinity();
+        for (int j = 0; j < n_delayed<Model>; ++j) {
+            p.past.lane[0].from[j] = p.past.lane[0].seen[j].number = -1;
+            p.past.lane[0].before[j] = p.past.lane[0].none;
+        }
+        p.past.lane[0].forget();
+        detail::recall<Model>(detail::begin_of(a, i), detail::state_of<Model>(a, i), p);
+    }
+}
 
 /// The argument p of instance i. It points into the arrays.
 template <class Model, class R>
@@ -22,18 +58,8 @@ inputs<Model, R> inputs_of(const argument_head<R>& a, std::int64_t i) {
 #undef MYRIAD_READ_KIND
     p.shared.values = a.shared.real;
     p.shared_integer.values = a.shared.integer;
+    detail::put_constant_past(p, a, i);
     return p;
-}
-/// Its state, and the time at which it begins.
-template <class Model, class R>
-vec<R, n_state<Model>> state_of(const argument_head<R>& a, std::int64_t i) {
-    vec<R, n_state<Model>> y;
-    for (int c = 0; c < MYRIAD_LENGTH(n_state<Model>); ++c) y[c] = a.state[c * a.size + i];
-    return y;
-}
-template <class R>
-R begin_of(const argument_head<R>& a, std::int64_t i) {
-    return a.t_begin != nullptr ? a.t_begin[i] : a.common_t_begin;
 }
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET

@@ -59,6 +59,7 @@ extern template class component_array<double>;
 extern template class component_array<float>;
 extern template class component_array<std::int64_t>;
 extern template class component_array<std::int32_t>;
+extern template class component_array<std::uint32_t>;
 extern template class component_array<std::int16_t>;
 extern template class component_array<std::uint8_t>;
 extern template class component_array<status>;

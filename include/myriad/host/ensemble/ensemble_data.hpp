@@ -70,6 +70,13 @@ struct ensemble_data : detail::instance_arrays<component_array, R> {
     /// The part of them that may change while the ensemble is in use.
     void fill_domain(detail::instance_arrays<detail::array_pointer, R>& pointers);
 
+    /// Has the past of models with delays kept, in rings of so many steps, with so many numbers of each state. Throws
+    /// `error` if there is not enough memory, or if instances under way have another past.
+    void keep_history(std::int32_t slots, std::int32_t terms);
+    detail::history_arguments<R> history_pointers();
+    /// The memory that it takes.
+    static double history_bytes(const model_shape& shape, std::int64_t size, std::int32_t slots, std::int32_t terms);
+
     /// Forgets all phases done, but not the samples.
     void restart();
     void pin(int gpu);
@@ -102,6 +109,11 @@ struct ensemble_data : detail::instance_arrays<component_array, R> {
     MYRIAD_SHARED_KINDS(MYRIAD_DECLARE_SHARED)
 #undef MYRIAD_DECLARE_SHARED
     R common_begin = unset, common_end = unset;
+    // of models with delays: kernel/model/past.hpp
+    component_array<R> history;
+    component_array<std::uint32_t> history_jumps;
+    component_array<std::int32_t> history_place;
+    std::int32_t history_slots = 0, history_terms = 0;
     ended_instances<R> ended_before;  // what is remembered from earlier calls
     // for readers of what there is no memory for; allocated by the first one
     mutable component_array<R> common_begins, common_ends, no_steps;

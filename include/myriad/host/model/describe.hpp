@@ -53,6 +53,9 @@ template <class Model>
     add(hooks, detail::has_after_event<Model>, "after_event");
     add(hooks, detail::has_triggers<Model>, "condition, after_trigger");
     add(hooks, detail::has_stops<Model>, "stop_time");
+    if constexpr (detail::has_delays<Model>)
+        hooks += message(", lag (", detail::n_delayed<Model>, detail::n_delayed<Model> == 1 ? " value)" : " values)");
+    add(hooks, detail::has_history<Model>, "history");
     add(hooks, detail::has_after_stop<Model>, "after_stop");
     add(hooks, detail::has_finalise<Model>, "finalise");
     add(declares, detail::writes_parameters<Model>, "writes_parameters");

@@ -238,6 +238,10 @@ struct option_table<options> {
                      "cells of these paths: steps that are a multiple of one, or a number of 65536ths of one, follow "
                      "the same path; 0: the step",
                      "give the longest of the steps that are to follow one path, or 0 for the step"},
+        option_entry{"history_steps", &o::history_steps, results, "steps", from_to(0, 1048576),
+                     "steps of the past that are kept of each instance of a model with delays; 0: 256 adaptive steps, "
+                     "1024 fixed ones",
+                     "give the steps over the longest delay and a few more, or 0"},
         option_entry{"events", &o::events, results,
                      "how events are detected: one entry for each; none: defaults for all"},
         option_entry{"sub_samples", &o::sub_samples, results, "", from_to(1, 1e4),

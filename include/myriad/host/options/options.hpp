@@ -149,6 +149,10 @@ struct options {
     /// same path. 0: the step.
     double noise_step = 0;
 
+    /// Steps of the past that are kept of each instance of a model with delays, rounded up to a power of two: those
+    /// over its longest delay, and a few. 0: 256 adaptive steps, 1024 fixed ones.
+    std::int64_t history_steps = 0;
+
     std::vector<event_options> events = {};  ///< one for each event, in the model's order; empty: defaults for all
     std::int64_t sub_samples = 1;  ///< points per step at which event functions are evaluated (the last is the end);
                                    ///< with two or more also where they turn

@@ -16,7 +16,8 @@ template <class Method>
 inline constexpr bool may_be_unstable = Method::embedded_order > 0 && !detail::solves_linear_systems<Method>;
 /// Whether a stiff method may be worth advising. Stiff methods do not support tangents.
 template <class Model, class Method>
-inline constexpr bool may_advise_stiff_methods = may_be_unstable<Method>&& detail::n_tangent<Model> == 0;
+inline constexpr bool may_advise_stiff_methods =
+    may_be_unstable<Method>&& detail::n_tangent<Model> == 0 && !detail::has_delays<Model>;
 
 /// The stability function of an explicit method at a real z: the factor of one step for y' = z y / h. Hairer, Wanner,
 /// Solving ODE II, IV.2, eq. (2.9).

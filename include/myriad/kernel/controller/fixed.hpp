@@ -117,7 +117,7 @@ struct fixed_stepping {
             for_each_lane(accepted & s.final_step, [&](int i) MYRIAD_LAMBDA { set_lane(s.data.t, i, stop_of(i)); });
         }
         mask over = accepted & s.final_step;
-        if constexpr (has_stops<Model>) over = over & (s.data.t == s.data.t_end);
+        if constexpr (has_known_stops<Model>) over = over & (s.data.t == s.data.t_end);
         if constexpr (has_events<Model>) over = over | (accepted & at_event & (s.data.t == s.data.t_end));
         return over;
     }
@@ -153,7 +153,7 @@ private:
     }
 
     /// The number of steps gives the time; it is only stored if something reads it.
-    static constexpr bool shows_time = has_after_step<Model> || has_events<Model> || has_stops<Model>;
+    static constexpr bool shows_time = has_after_step<Model> || has_events<Model> || has_known_stops<Model>;
 
     /// Divides the way of lane i from t to the next stop into steps, the last ending exactly there. A way that is a
     /// whole number of steps up to rounding gets that number, without a sliver at the end.
@@ -178,7 +178,7 @@ private:
     /// The time at which lane i's steps end, for rare use: without stop times it is read from the ensemble, so that it
     /// need not stay in a register. With events, which compare it with t at every step, it stays there.
     MYRIAD_FUNCTION R stop_of(int i) const {
-        if constexpr (writes_time_domain<Model> || has_events<Model> || has_stops<Model>) {
+        if constexpr (writes_time_domain<Model> || has_events<Model> || has_known_stops<Model>) {
             return get_lane(s.t_stop(), i);
         } else {
             const bool own = args.t_end != nullptr;

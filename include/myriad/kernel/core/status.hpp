@@ -24,10 +24,12 @@ enum class status : std::uint8_t {
     singular_jacobian,  ///< a linear solve of an implicit method failed, or no algebraic states satisfy their equations
     invalid_input,      ///< a state, parameter or time was not finite at the start
     queue_overflow,     ///< a hook returned `action::overflow`: no room for an action that is to run later
+    history_overflow,   ///< a delay reaches further back than the `options::history_steps` steps that are kept
+    invalid_delay,      ///< a delay is negative, zero or not a number, or a fixed step is longer than it
     interrupted,  ///< the call ended before: by its time limit, or half a second after the progress function asked
 };
 /// The number of statuses.
-inline constexpr int status_count = 12;
+inline constexpr int status_count = 14;
 
 /// True for the statuses that end an instance for good.
 MYRIAD_FUNCTION bool is_failure(status s) { return s >= status::max_steps; }

@@ -5,6 +5,7 @@
 #include "myriad/kernel/core/static_for.hpp"
 #include "myriad/kernel/model/jacobian_pattern.hpp"
 #include "myriad/kernel/model/lane.hpp"
+#include "myriad/kernel/model/recall.hpp"
 #include "myriad/kernel/scalar/dual.hpp"
 #include "myriad/kernel/scalar/math.hpp"
 
@@ -13,7 +14,19 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 template <class Model, class S>
 MYRIAD_FUNCTION vec<S, n_event<Model>> evaluate_events(const S& t, const vec<S, n_state<Model>>& y,
                                                        const inputs<Model, S>& p) {
+    if constexpr (has_delays<Model>) detail::recall<Model>(t, y, p);
     return Model::template events<S>(t, y, p);
+}
+
+/// The same with derivatives in some direction.
+template <class Model, class S>
+MYRIAD_FUNCTION auto evaluate_moving_events(const dual<S>& t, const vec<dual<S>, n_state<Model>>& y,
+                                            const inputs<Model, S>& p) {
+    if constexpr (has_delays<Model>) {
+        return Model::template events<dual<S>>(t, y, detail::moving_past<Model>(t, y, p));
+    } else {
+        return Model::template events<dual<S>>(t, y, p);
+    }
 }
 
 /// Derivatives of the event functions along the solution through (t, y) with the given slope.
@@ -24,7 +37,7 @@ MYRIAD_FUNCTION vec<S, n_event<Model>> event_slopes(const S& t, const vec<S, n_s
     vec<dual<S>, n_state<Model>> y_dual;
     MYRIAD_UNROLL
     for (int c = 0; c < MYRIAD_LENGTH(n_state<Model>); ++c) y_dual[c] = dual<S>(y[c], slope[c]);
-    const auto g = Model::template events<dual<S>>(dual<S>(t, S(R(1))), y_dual, p);
+    const auto g = detail::evaluate_moving_events<Model>(dual<S>(t, S(R(1))), y_dual, p);
     vec<S, n_event<Model>> slopes;
     MYRIAD_UNROLL
     for (int j = 0; j < MYRIAD_LENGTH(n_event<Model>); ++j) slopes[j] = g[j].derivative;
@@ -63,7 +76,7 @@ MYRIAD_FUNCTION vec<R, n_event<Model>> compute_roundings(const R& t, const vec<R
             }
         });
     }
-    const auto g = Model::template events<dual<R>>(dual<R>(t, R(0.5) * t), y_dual, p);
+    const auto g = detail::evaluate_moving_events<Model>(dual<R>(t, R(0.5) * t), y_dual, p);
     vec<R, n_event<Model>> rounding;
     MYRIAD_UNROLL
     for (int j = 0; j < MYRIAD_LENGTH(n_event<Model>); ++j) {

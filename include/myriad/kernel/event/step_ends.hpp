@@ -27,7 +27,7 @@ struct step_ends {
     /// The same with their slopes per step.
     MYRIAD_FUNCTION vec<dual<R>, n_event<Model>> moving_values_at(R theta) const {
         const auto inside = detail::hermite_interpolation(y, y1, slope, slope1, h, dual<R>(theta, R(1)));
-        return Model::template events<dual<R>>(dual<R>(fma(theta, h, t), h), inside, p);
+        return detail::evaluate_moving_events<Model>(dual<R>(fma(theta, h, t), h), inside, p);
     }
     /// The rounding errors of the event functions at the end: the state there is the sum of that at the start and of
     /// increments.

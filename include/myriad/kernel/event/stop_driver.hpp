@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "myriad/kernel/core/static_for.hpp"
+#include "myriad/kernel/event/breaking_points.hpp"
 #include "myriad/kernel/model/hooks.hpp"
 #include "myriad/kernel/state/integration_state.hpp"
 
@@ -88,15 +89,18 @@ private:
     /// the end of a kind's stops.
     MYRIAD_FUNCTION void find_next(int i) const {
         const R t = get_lane(s.data.t, i), t_end = get_lane(s.data.t_end, i);
-        const auto& p = detail::inputs_of_lane(s.data, i);
         R nearest = t_end;
-        MYRIAD_UNROLL
-        for (int j = 0; j < MYRIAD_LENGTH(kinds); ++j) {
-            pass_over(p, i, j, t);
-            const R time = time_of(p, j, s.stops.number[i][j]);
-            const bool nearer = t <= t_end ? time >= t && time < nearest : time <= t && time > nearest;
-            if (is_finite(time) && nearer) nearest = time;
+        if constexpr (has_stops<Model>) {
+            const auto& p = detail::inputs_of_lane(s.data, i);
+            MYRIAD_UNROLL
+            for (int j = 0; j < MYRIAD_LENGTH(kinds); ++j) {
+                pass_over(p, i, j, t);
+                const R time = time_of(p, j, s.stops.number[i][j]);
+                const bool nearer = t <= t_end ? time >= t && time < nearest : time <= t && time > nearest;
+                if (is_finite(time) && nearer) nearest = time;
+            }
         }
+        if constexpr (has_delays<Model>) nearest = breaking_points<Model, Method, S>::nearest(s, i, nearest);
         set_lane(s.stops.next, i, nearest);
     }
     /// Sets the number of the next stop of kind j in lane i: the first, from that before it on, whose time is still to

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "myriad/kernel/controller/stepping.hpp"
+#include "myriad/kernel/event/breaking_points.hpp"
 #include "myriad/kernel/event/event_driver.hpp"
 #include "myriad/kernel/event/stop_driver.hpp"
 #include "myriad/kernel/integrator/consistent_state.hpp"
@@ -28,6 +29,8 @@ struct hook_driver {
         const lane_data<Model, S> before = kept();
         mask changed = mask(false);
         if constexpr (has_generic_after_step<Model, R>) {
+            if constexpr (has_delays<Model>)
+                detail::recall<Model>(s.data.t, s.data.y, static_cast<const inputs<Model, S>&>(s.data));
             lane_data<Model, S> after = s.data;
             lane<Model, S> view(after);
             mask stops = mask(false);
@@ -80,6 +83,7 @@ struct hook_driver {
                 s.slopes.invalidate(changed);
                 check_finite(changed, before.y);
                 make_consistent(changed);
+                jump(changed, 0);
                 events.update_after_hook(changed);
             }
             for_each_lane(acting, [&](int i) MYRIAD_LAMBDA { events.update_after_events(i, before); });
@@ -121,12 +125,17 @@ struct hook_driver {
         const stop_driver<Model, Method, S> stops{args, s};
         const mask due = stops.due();
         if (!MYRIAD_UNLIKELY(any(due))) return;
+        // What the right-hand side does from a stop on need not be what it did before.
+        mask acted = mask(false);
         if constexpr (has_triggers<Model>) {
             for_each_lane(due, [&](int i) MYRIAD_LAMBDA {
-                s.end_lane(i,
-                           stops.act(i, [&](auto j, std::int32_t number) MYRIAD_LAMBDA { act_on_stop(i, j, number); }));
+                s.end_lane(i, stops.act(i, [&](auto j, std::int32_t number) MYRIAD_LAMBDA {
+                    act_on_stop(i, j, number);
+                    if constexpr (has_delays<Model>) set_lane(acted, i, true);
+                }));
                 lay_steps(i);
             });
+            jump(acted, 1);
             return;
         }
         const lane_data<Model, S> before = kept();
@@ -134,14 +143,61 @@ struct hook_driver {
             const status ending = stops.act(i, [&](auto j, std::int32_t number) MYRIAD_LAMBDA {
                 if constexpr (has_after_stop<Model>)
                     run_hook(i, [&](auto& lane) MYRIAD_LAMBDA { return Model::after_stop(j, number, lane); });
+                if constexpr (has_delays<Model>) set_lane(acted, i, true);
             });
             s.end_lane(i, ending);
             lay_steps(i);
         });
+        jump(acted, 1);
         follow_action(due & differs(before, s.data), before);
     }
 
+    /// Lets the jumps of the past arrive that are due, after all actions at this instant: the slope is another from
+    /// here on, and so may event functions be that read the past.
+    MYRIAD_FUNCTION void arrive(const mask& accepted) {
+        const breaking_points<Model, Method, S> breaks{args, s};
+        const mask due = breaks.due(accepted);
+        if (!MYRIAD_UNLIKELY(any(due))) return;
+        [[maybe_unused]] vec<S, m> before;
+        if constexpr (has_events<Model>) before = detail::evaluate_events<Model>(s.now(), s.data.y, s.data);
+        mask arrived = mask(false), jumped = mask(false);
+        for_each_lane(due, [&](int i) MYRIAD_LAMBDA {
+            const int level = breaks.arrive(i);
+            if (level == breaks.never) return;
+            set_lane(arrived, i, true);
+            set_lane(jumped, i, level == 1);  // else functions of delayed values go on, and may cross zero here
+            stop_driver<Model, Method, S>{args, s}.update(i);
+            lay_steps(i);
+        });
+        s.slopes.invalidate(arrived);
+        if constexpr (has_events<Model>) {
+            const vec<S, m> after = detail::evaluate_events<Model>(s.now(), s.data.y, s.data);
+            const mask moved = jumped & differing(after, before);
+            if (!any(moved)) return;
+            events.forget_fired();  // their actions are done
+            events.update_after_hook(moved, before);
+            if constexpr (has_triggers<Model>) {
+                for_each_lane(moved, [&](int i) MYRIAD_LAMBDA {
+                    events.conditions().update(i);
+                    act_on_triggers_of(i);
+                });
+                act_on_conditions();
+            }
+        }
+    }
+
 private:
+    /// The solution jumps in these lanes, or, at `level` 1, its slope: the past has a jump that arrives later.
+    MYRIAD_FUNCTION void jump([[maybe_unused]] const mask& lanes, [[maybe_unused]] int level) {
+        if constexpr (has_delays<Model>) {
+            s.slopes.invalidate(lanes);
+            for_each_lane(lanes, [&](int i) MYRIAD_LAMBDA {
+                breaking_points<Model, Method, S>{args, s}.jump(i, level);
+                if (stop_driver<Model, Method, S>{args, s}.update(i)) lay_steps(i);
+            });
+        }
+    }
+
     /// The data before a hook is called.
     MYRIAD_FUNCTION lane_data<Model, S> kept() const {
         lane_data<Model, S> before = s.data;
@@ -222,6 +278,7 @@ private:
         if (!any(changed)) return;
         check_finite(changed, before.y);
         make_consistent(changed);
+        jump(changed, 0);
         if constexpr (has_events<Model>) events.forget_fired();  // their actions are done
         follow_up(changed, before);
     }
@@ -269,9 +326,11 @@ private:
         const R t = get_lane(s.data.t, i);
         const R t_end = get_lane(s.data.t_end, i);
         if (t_end != t_end) return s.end_lane(i, status::not_finite);
+        if constexpr (has_delays<Model>)
+            if (t_end < t) return s.end_lane(i, status::invalid_delay);  // the past is kept forwards
         const bool there = t == t_end;
         if (s.ending[i] == status::success) set_lane(s.ended, i, there);  // other endings stand
-        if constexpr (has_stops<Model>) stop_driver<Model, Method, S>{args, s}.update(i);
+        if constexpr (has_known_stops<Model>) stop_driver<Model, Method, S>{args, s}.update(i);
         if (there) return;
         stepping<Model, Method, S>{args, s}.move(i, t);
     }
@@ -314,6 +373,8 @@ private:
     /// After a hook changed lanes that were as in `before`: slopes and event functions are evaluated again.
     MYRIAD_FUNCTION void follow_up(const mask& changed, const lane_data<Model, S>& before) {
         s.slopes.invalidate(changed);
+        if constexpr (has_delays<Model>)
+            for_each_lane(changed, [&](int i) MYRIAD_LAMBDA { s.data.past.lane[i].resumes = true; });
         if constexpr (has_events<Model>) {
             const inputs<Model, S>& p = before;
             events.update_after_hook(changed, detail::evaluate_events<Model>(s.now(), before.y, p));

@@ -13,6 +13,7 @@
 #include "myriad/kernel/integrator/hook_driver.hpp"
 #include "myriad/kernel/integrator/phase.hpp"
 #include "myriad/kernel/integrator/phase_watchdog.hpp"
+#include "myriad/kernel/integrator/trial_iteration.hpp"
 #include "myriad/kernel/integrator/warp_aggregation.hpp"
 #include "myriad/kernel/output/observers.hpp"
 #include "myriad/kernel/state/integration_state.hpp"
@@ -63,6 +64,7 @@ struct integrator {
             ++s.iteration;
             const step_decision<S> decided = judge(trial, detected, events);
             mask accepted = decided.accepted;
+            if constexpr (locates_breaks) accepted = accepted & !locate_breaks(trial, accepted, events);
             // A single lane has no branch here: in every step it would cost more than this addition.
             s.rejected = count_where(s.running() & !accepted, s.rejected);
             if constexpr (has_events<Model>) events.locate(trial, end_time(), detected, accepted);
@@ -81,6 +83,7 @@ struct integrator {
             } else if constexpr (has_stops<Model>) {
                 hooks.act_on_stops();
             }
+            if constexpr (has_delays<Model>) hooks.arrive(accepted);
         }
         if constexpr (requires { source.gives_only_one(); })
             phase_driver<Model, Method, S>{args, s, events, observed}.finish(0);
@@ -95,7 +98,10 @@ struct integrator {
         s.clear_iterations(args);
         if constexpr (stochastic_method<Method>) s.steps.clear_path();
         MYRIAD_UNROLL
-        for (int i = 0; i < lanes_of<S>; ++i) s.instance[i] = -1;
+        for (int i = 0; i < lanes_of<S>; ++i) {
+            s.instance[i] = -1;
+            if constexpr (has_delays<Model>) breaking_points<Model, Method, S>{args, s}.clear(i);
+        }
     }
 
     /// Moves lanes whose phase has ended to their next phase or instance. Returns false when no lane is running.
@@ -143,14 +149,38 @@ struct integrator {
 
     /// The length of the next trial and the slope at its start.
     MYRIAD_FUNCTION void propose_step(event_driver_type& events) {
-        stepping_type{args, s}.propose(events.locating());
+        mask bound = events.locating();  // steps that end where they were located to
+        if constexpr (has_delays<Model>) {
+            bound = bound | s.breaks.redone;
+            s.breaks.redone = mask(false);
+        }
+        stepping_type{args, s}.propose(bound);
+        if constexpr (has_delays<Model> && is_adaptive<Method>) stay_in_past(bound);
         s.slopes.prepare(s.now(), s.data, s.extra_evaluations);
     }
 
+    /// Shortens steps a little longer than a delay, so that they need not be iterated.
+    MYRIAD_FUNCTION void stay_in_past(const mask& bound) {
+        constexpr R a_little = R(4);  // an iteration takes the evaluations of about so many steps
+        const S longest = breaking_points<Model, Method, S>{args, s}.longest_step();
+        const mask shortened = (s.h > longest) & (s.h <= S(a_little) * longest) & !bound;
+        if (!any(shortened)) return;
+        s.h = select(shortened, (s.data.t + longest) - s.data.t, s.h);
+        s.final_step = s.final_step & !shortened;
+    }
+
     MYRIAD_FUNCTION void take_step(trial_type& trial) {
+        if constexpr (has_delays<Model>) detail::forget_trial(s.data);
         detail::copy_components(trial.slope_start(), s.slopes.first_stage(s.now(), s.data));
         if constexpr (stochastic_method<Method>) trial.noise = s.steps.interval(args.noise);
-        detail::take_trial_step<Method, Model>(s.now(), s.h, end_time(), s.data.y, s.data, trial);
+        if constexpr (has_delays<Model> && is_adaptive<Method>) {
+            trial_iteration<Model, Method, S> iteration{args, s};
+            do {
+                detail::take_trial_step<Method, Model>(s.now(), s.h, end_time(), s.data.y, s.data, trial);
+            } while (iteration.goes_on(trial, end_time()));
+        } else {
+            detail::take_trial_step<Method, Model>(s.now(), s.h, end_time(), s.data.y, s.data, trial);
+        }
     }
 
     /// Whether the trial, in which an event may begin, is to be taken again when more threads of the warp have one.
@@ -172,10 +202,11 @@ struct integrator {
         stepping_type steps{args, s};
         mask defined = mask(true);
         if constexpr (has_events<Model>) defined = events.defined(detected);
+        if constexpr (has_delays<Model>) defined = defined & detail::past_is_known(s.data);
         const auto end_stuck = [&](const mask& failed, mask still) MYRIAD_LAMBDA {
             // A flight between events may be shorter than the resolution of t.
             still = still & !events.locating();
-            for_each_lane(failed | still, [&](int i) MYRIAD_LAMBDA { s.end_lane(i, steps.failure_of(i)); });
+            for_each_lane(failed | still, [&](int i) MYRIAD_LAMBDA { s.end_lane(i, failure_of(i)); });
             return still;
         };
         const step_decision<S> decided = steps.judge(trial, end_time(), defined, end_stuck);
@@ -203,9 +234,34 @@ struct integrator {
     }
 
 private:
+    static constexpr bool locates_breaks = [] {
+        if constexpr (has_delays<Model>) {
+            using breaks = breaking_points<Model, Method, S>;
+            return breaks::tracks && !breaks::knows_arrivals;
+        } else {
+            return false;
+        }
+    }();
+    /// The lanes whose step is taken again up to where a jump of the past arrives.
+    MYRIAD_FUNCTION mask locate_breaks(const trial_type& trial, const mask& accepted, const event_driver_type& events) {
+        const S t1 = end_time();
+        const mask open = accepted & !events.locating(), none = mask(false);
+        return breaking_points<Model, Method, S>{args, s}.locate({s, trial, t1, open, none});
+    }
+
     /// Only hooks see the step just taken.
     static constexpr bool shows_step = has_after_step<Model> || has_after_event<Model> || has_after_stop<Model> ||
                                        has_triggers<Model> || has_finalise<Model>;
+    /// Why the trial of lane i, which is stuck, failed.
+    MYRIAD_FUNCTION status failure_of(int i) {
+        if constexpr (has_delays<Model>) {
+            const auto trouble = s.data.past.lane[i].trouble;
+            if (trouble & past_trouble::lost) return status::history_overflow;
+            if (trouble & past_trouble::invalid) return status::invalid_delay;
+            if (trouble != past_trouble::none && !is_adaptive<Method>) return status::invalid_delay;
+        }
+        return stepping_type{args, s}.failure_of(i);
+    }
     /// Time at the end of the trial.
     MYRIAD_FUNCTION S end_time() { return stepping_type{args, s}.end_time(); }
 };
@@ -222,6 +278,7 @@ MYRIAD_FUNCTION std::int64_t integrate(const kernel_arguments<Model, real_of<S>>
     static_assert(hooks_fit<Model, real_of<S>>);
     static_assert(noise_fits<Model, Method, real_of<S>>);
     static_assert(stepper<Method, Model, S>);
+    static_assert(delays_fit<Model, Method>);
     event_memories<Model, real_of<S>, lanes_of<S>> memory;  // outside the loop's own state, which is in registers
     integrator<Model, Method, S> loop{args, {}, {}, &memory};
     loop.run(source, shared);

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "myriad/kernel/controller/stepping.hpp"
+#include "myriad/kernel/event/breaking_points.hpp"
 #include "myriad/kernel/event/event_driver.hpp"
 #include "myriad/kernel/event/stop_driver.hpp"
 #include "myriad/kernel/integrator/consistent_state.hpp"
@@ -123,6 +124,7 @@ private:
         if constexpr (writes_time_domain<Model>) load_time_domain(i);
         stepping_type{args, s}.load(i);
         if constexpr (m > 0) events.load(i);
+        if constexpr (has_delays<Model>) breaking_points<Model, Method, S>{args, s}.load(i);
         set_lane(s.data.index, i, args.first_index + index);
         s.phases_left[i] = args.ended[index] != 0 ? 0 : args.phases - args.first_phase;
     }
@@ -154,6 +156,7 @@ private:
             at(args.integer_accessory, c, i) = static_cast<std::int32_t>(get_lane(s.data.integer_accessory[c], i));
         if constexpr (team_size < Model >> 1) as_part<Model>::store(args, index);
         stepping_type{args, s}.store(i);
+        if constexpr (has_delays<Model>) breaking_points<Model, Method, S>{args, s}.store(i);
     }
 
     /// Adds the work of the phase to the instance's counters.
@@ -215,11 +218,13 @@ private:
             if (has_initialise<Model> || phase > 0) make_consistent(i);  // other initial values the host has checked
         }
         const R t = get_lane(s.data.t, i);
+        if constexpr (has_delays<Model>)
+            s.end_lane(i, breaking_points<Model, Method, S>{args, s}.begin(i, phase == 0, t - args.t[index]));
         args.t[index] = t;
         observers<Model, Method, S>{args, s, observed}.begin(i);  // stop times may read what they write
-        if constexpr (has_stops<Model>) {
+        if constexpr (has_known_stops<Model>) {
             const stop_driver<Model, Method, S> stops{args, s};
-            if (has_initialise<Model> && carry_on) {
+            if (has_stops<Model> && has_initialise<Model> && carry_on) {
                 stops.update(i);
             } else {
                 stops.begin(i, carry_on);
@@ -256,6 +261,10 @@ private:
         });
         s.end_lane(i, ending);
         if (!acted) return;
+        if constexpr (has_delays<Model>) {
+            breaking_points<Model, Method, S>{args, s}.jump(i, 0);
+            stops.update(i);
+        }
         if constexpr (n_algebraic < Model >> 0) make_consistent(i);
         stepping_type{args, s}.begin(i, t);
     }

@@ -30,4 +30,4 @@
 #define MYRIAD_ENUMERATED_KINDS(row)                                                  \
     MYRIAD_COMPONENT_KINDS(row)                                                       \
     row(observed, observed, "observed quantity", void) row(stop, stops, "stop", void) \
-        row(trigger, triggers, "trigger", void)
+        row(trigger, triggers, "trigger", void) row(delayed, delayed_values, "delayed value", void)

@@ -175,6 +175,9 @@ MYRIAD_HOOK_NAME(condition)
 MYRIAD_HOOK_NAME(after_trigger)
 MYRIAD_HOOK_NAME(finalise)
 MYRIAD_HOOK_NAME(publish)
+MYRIAD_HOOK_NAME(delayed_state)
+MYRIAD_MEMBER_NAME(lag)
+MYRIAD_MEMBER_NAME(history)
 MYRIAD_MEMBER_NAME(diffusion)
 #define MYRIAD_NAME_OF_COUNT(kind, ...) \
     MYRIAD_MEMBER_NAME(n_##kind)        \
@@ -188,6 +191,15 @@ MYRIAD_ENUMERATED_KINDS(MYRIAD_NAME_OF_COUNT)
 /// Whether steps have to end at times that the model gives.
 template <class Model>
 inline constexpr bool has_stops = n_stop<Model> > 0;
+/// Whether a model reads values of its past.
+template <class Model>
+inline constexpr bool has_delays = n_delayed<Model> > 0;
+/// Whether it gives the states before the beginning; else they are the initial ones.
+template <class Model>
+inline constexpr bool has_history = has_delays<Model>&& names_history<Model>();
+/// Whether steps end before t_end at times that are known: at stops, or where a jump of the past arrives.
+template <class Model>
+inline constexpr bool has_known_stops = has_stops<Model> || has_delays<Model>;
 /// Whether a model has a component or constant `stop_time`, which is no hook.
 template <class Model>
 inline constexpr bool stop_time_is_a_value = requires {
@@ -264,6 +276,10 @@ constexpr bool check_model() {
     static_assert(has_stops<Model> ? has_stop_time<Model> && !stop_time_is_a_value<Model>
                                    : !has_stop_time<Model> || stop_time_is_a_value<Model>,
                   "a model with stop times has both `enum stop { ..., n_stop };` and a function `stop_time`");
+    static_assert(
+        !has_delays<Model> || (has_delayed_state<Model> && names_lag<Model>()),
+        "a model with delays has `enum delayed { ..., n_delayed };` and the functions `delayed_state`, the state "
+        "that a delayed value is of, and `lag`, how long ago it is");
     static_assert(!has_after_stop<Model> || has_stops<Model>,
                   "the model has after_stop but no stop times: give it `enum stop { ..., n_stop };` and `stop_time`");
     return true;

@@ -28,6 +28,7 @@ inline constexpr call_facts facts_of{
     .scales_tolerances = scales_tolerances<Method>,
     .samples_trajectory = samples_trajectory<Method>,
     .hooks_may_stop = hooks_may_stop<Model, R>(),
+    .history_terms = history_terms<Method>,
     .tangents = tangents_of<Model>(),
 };
 

@@ -12,6 +12,7 @@
 #include "myriad/kernel/model/jacobian_pattern.hpp"
 #include "myriad/kernel/model/lane.hpp"
 #include "myriad/kernel/model/noise.hpp"
+#include "myriad/kernel/model/recall.hpp"
 #include "myriad/kernel/model/summaries.hpp"
 #include "myriad/kernel/scalar/matrix_loop.hpp"
 
@@ -174,6 +175,24 @@ constexpr bool check_hooks(const vec<R, n_state<Model>>* y = nullptr, const inpu
                           "stop_time(int stop, int number, const auto& p)`, the time of the stop of that number, and "
                           "public")
     }
+    if constexpr (has_delays<Model> && has_delayed_state<Model>) {
+        static_assert(states_of_delays_exist<Model>(), "delayed_state names no state of the model");
+        static_assert(
+            requires {
+                { Model::template lag<R>(int{}, *p) } -> std::same_as<R>;
+            } ||
+                requires {
+                    { Model::template lag<R>(int{}, R{}, *y, *p) } -> std::same_as<R>;
+                },
+            "lag has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static R lag(int delayed, const "
+            "auto& p)` or, if it depends on time or state, `R lag(int delayed, const R& t, const myriad::vec<R, "
+            "n_state>& y, const auto& p)`, and public");
+    }
+    if constexpr (has_history<Model>) {
+        MYRIAD_CHECK_CALL((Model::template history<R>(int{}, R{}, *p)), std::same_as<R>,
+                          "history has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static R "
+                          "history(int delayed, const R& t, const auto& p)`, and public")
+    }
     if constexpr (has_after_stop<Model>) {
         MYRIAD_CHECK_CALL((Model::after_stop(int{}, int{}, *l)), hook_result,
                           "after_stop has a wrong signature: it must be `MYRIAD_FUNCTION static myriad::action "
@@ -244,6 +263,7 @@ inline constexpr bool keeps_end_of_phase = requires {
 /// Runs a scalar hook on lane i: on the data itself for one instance, on a copy of the lane for a pack.
 template <class Model, class S, class Hook>
 MYRIAD_FUNCTION action run_on_lane(lane_data<Model, S>& data, int i, Hook&& hook) {
+    if constexpr (has_delays<Model>) detail::recall<Model>(data.t, data.y, static_cast<const inputs<Model, S>&>(data));
     if constexpr (lanes_of<S> == 1) {
         lane<Model, S> view(data);
         return detail::action_of([&]() MYRIAD_LAMBDA { return hook(view); });

@@ -5,6 +5,7 @@
 #include "myriad/kernel/model/concepts.hpp"
 #include "myriad/kernel/model/jacobian_pattern.hpp"
 #include "myriad/kernel/model/lane.hpp"
+#include "myriad/kernel/model/recall.hpp"
 #include "myriad/kernel/scalar/dual.hpp"
 #include "myriad/kernel/scalar/matrix_loop.hpp"
 
@@ -34,7 +35,16 @@ MYRIAD_FUNCTION vec<Dual, n> constants(const vec<S, n>& y) {
 template <class Model, class S>
 MYRIAD_FUNCTION vec<S, n_state<Model>> time_derivative(const S& t, const vec<S, n_state<Model>>& y,
                                                        const inputs<Model, S>& p) {
-    return detail::directional_derivative<Model>(dual<S>(t, S(real_of<S>(1))), constants<dual<S>>(y), p);
+    const dual<S> moving(t, S(real_of<S>(1)));
+    const auto at = constants<dual<S>>(y);
+    if constexpr (has_delays<Model>) {  // the past moves with t
+        const auto f = Model::template rhs<dual<S>>(moving, at, detail::moving_past<Model>(moving, at, p));
+        vec<S, n_state<Model>> out;
+        for (int c = 0; c < MYRIAD_LENGTH(n_state<Model>); ++c) out[c] = f[c].derivative;
+        return out;
+    } else {
+        return detail::directional_derivative<Model>(moving, at, p);
+    }
 }
 
 /// df_i/dy_j in row i and column j, by one evaluation of the right-hand side with dual numbers per column. In an
@@ -77,6 +87,7 @@ MYRIAD_FUNCTION void for_each_jacobian_entry(const S& t, const vec<S, n_state<Mo
     using R = real_of<S>;
     using groups = std::remove_cv_t<decltype(jacobian_groups_of<Model>)>;
     constexpr int entries = n_jacobian_entry<Model>;
+    if constexpr (has_delays<Model>) detail::recall<Model>(t, y, p);
     if constexpr (gives_jacobian<Model> && has_jacobian_pattern<Model>) {
         const vec<S, entries> own = Model::template jacobian<S>(t, y, p);
         Loop::template range<0, entries>([&](auto e) MYRIAD_LAMBDA { put(e, own[e]); });
@@ -109,10 +120,11 @@ MYRIAD_FUNCTION void for_each_jacobian_entry(const S& t, const vec<S, n_state<Mo
     }
 }
 
-/// The model's own Jacobian if it has one, else that by dual numbers.
+/// The model's own Jacobian if it has one, else that by dual numbers. By the state as it is, not as it was.
 template <class Model, class S>
 MYRIAD_FUNCTION void evaluate_jacobian(const S& t, const vec<S, n_state<Model>>& y, const inputs<Model, S>& p,
                                        matrix<S, n_state<Model>>& jacobian) {
+    if constexpr (has_delays<Model>) detail::recall<Model>(t, y, p);
     if constexpr (gives_jacobian<Model> && has_jacobian_pattern<Model>) {
         const auto own = Model::template jacobian<S>(t, y, p);
         jacobian = {};

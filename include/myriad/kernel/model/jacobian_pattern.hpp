@@ -178,7 +178,7 @@ constexpr bool may_depend_on_time() {
 }
 /// Whether the right-hand side may depend on t: it does not if the model is declared, or found, autonomous.
 template <class Model>
-inline constexpr bool depends_on_time = may_depend_on_time<Model>();
+inline constexpr bool depends_on_time = has_delays<Model> || may_depend_on_time<Model>();
 
 /// Where a Jacobian's pattern is from.
 enum class pattern_origin { none, declared, found };

@@ -8,6 +8,7 @@
 
 #include "myriad/kernel/core/vec.hpp"
 #include "myriad/kernel/model/concepts.hpp"
+#include "myriad/kernel/model/past.hpp"
 #include "myriad/kernel/scalar/select.hpp"
 #include "myriad/kernel/scalar/wide_integer.hpp"
 
@@ -83,7 +84,9 @@ namespace myriad::inline MYRIAD_TARGET {
 /// The argument p of rhs and events: `p[i]` is parameter i of the instance, `p.shared[i]` a value common to all
 /// instances. It has no accessories in a model that declares them outputs.
 template <class Model, class S>
-struct inputs : accessories<Model, S, !detail::accessories_are_outputs<Model>>, detail::place_of_inputs<Model> {
+struct inputs : accessories<Model, S, !detail::accessories_are_outputs<Model>>,
+                values_of_past<Model, S, detail::has_delays<Model>>,
+                detail::place_of_inputs<Model> {
     using real = real_of<S>;  ///< double or float
     /// The parameters of the instance; `p[k]` is short for `p.parameter[k]`.
     vec<S, detail::n_parameter<Model>> parameter;
@@ -129,7 +132,7 @@ namespace myriad::inline MYRIAD_TARGET {
 /// writable if the model declares `writes_parameters`, the time domain if it declares `writes_time_domain`: a phase
 /// continues to a new t_end, backwards if need be; a new t_begin takes effect in the next phase.
 template <class Model, class S>
-struct lane {
+struct lane : past_of_hook<Model, S, detail::has_delays<Model>> {
     /// A reference, constant where the model may not write.
     template <class T, bool writable>
     using ref = std::conditional_t<writable, T&, const T&>;
@@ -152,9 +155,10 @@ struct lane {
 
     /// Made by the library.
     MYRIAD_FUNCTION explicit lane(detail::lane_data<Model, S>& d)
-        : t(d.t), t_begin(d.t_begin), t_end(d.t_end), h(d.h), h_next(d.h_next), y(d.y), parameter(d.parameter),
-          shared(d.shared), shared_integer(d.shared_integer), accessory(d.accessory),
-          integer_accessory(d.integer_accessory), index(d.index), phase(d.phase), event_count(d.event_count) {}
+        : past_of_hook<Model, S, detail::has_delays<Model>>(d), t(d.t), t_begin(d.t_begin), t_end(d.t_end), h(d.h),
+          h_next(d.h_next), y(d.y), parameter(d.parameter), shared(d.shared), shared_integer(d.shared_integer),
+          accessory(d.accessory), integer_accessory(d.integer_accessory), index(d.index), phase(d.phase),
+          event_count(d.event_count) {}
 };
 
 }  // namespace myriad::inline MYRIAD_TARGET
@@ -205,6 +209,10 @@ MYRIAD_FUNCTION void for_each_member(Visit&& visit, Data&... d) {
     visit(member_use<false, true>{}, d.t...);
     visit(member_use<false, true>{}, d.shared...);
     visit(member_use<false, true>{}, d.shared_integer...);
+    if constexpr (has_delays<Model>) {
+        visit(member_use<false, false>{}, d.delayed...);
+        visit(member_use<false, false>{}, d.past...);
+    }
     visit(member_use<false, false>{}, d.h...);
     visit(member_use<false, false>{}, d.index...);
     visit(member_use<false, false>{}, d.phase...);

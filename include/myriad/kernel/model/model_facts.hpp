@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "myriad/kernel/model/concepts.hpp"
+#include "myriad/kernel/model/past_layout.hpp"
 
 namespace myriad::detail {
 
@@ -15,6 +16,7 @@ struct model_numbers {
     MYRIAD_COMPONENT_KINDS(MYRIAD_DECLARE_NUMBER)
 #undef MYRIAD_DECLARE_NUMBER
     bool writes_parameters, writes_time_domain, has_diffusion;
+    std::int32_t n_kept;  ///< states whose past is kept, in models with delays
 
     constexpr bool operator==(const model_numbers&) const = default;
 };
@@ -33,6 +35,7 @@ struct call_facts {
     bool scales_tolerances;       ///< in each instance
     bool samples_trajectory;
     bool hooks_may_stop;  ///< they can end a phase before t_end
+    std::int32_t history_terms;
     tangent_places tangents;
 
     constexpr bool adaptive() const { return embedded_order > 0; }
@@ -46,6 +49,7 @@ inline constexpr model_numbers numbers_of{
         .writes_parameters = writes_parameters<Model>,
     .writes_time_domain = writes_time_domain<Model>,
     .has_diffusion = has_diffusion<Model>,
+    .n_kept = n_kept<Model>,
 };
 
 }  // namespace myriad::detail

@@ -185,6 +185,10 @@ struct with_variations : forwarded_hooks<Model, varied_hooks<Model, Directions>>
     static_assert(!has_diffusion<Model>,
                   "with_tangents and with_sensitivities take no model with a diffusion: derivatives of its paths are "
                   "not there yet");
+    static_assert(
+        !has_delays<Model>,
+        "with_tangents and with_sensitivities take no model with delays: derivatives of its past are not there "
+        "yet");
 
     using original = Model;                                    ///< the model alone
     static constexpr int n_original = detail::n_state<Model>;  ///< number of its states

@@ -3,6 +3,7 @@
 // together.
 #pragma once
 
+#include "myriad/kernel/output/history_writer.hpp"
 #include "myriad/kernel/output/sampler.hpp"
 #include "myriad/kernel/output/summariser.hpp"
 #include "myriad/kernel/state/inside_step.hpp"
@@ -83,6 +84,7 @@ private:
 /// The observers, in the order in which they are called. Another one is a header of its own, included above, and a name
 /// here.
 template <class Model, class Method, class S>
-using observers = observer_list<Model, Method, S, sampler<Model, Method, S>, summariser<Model, Method, S>>;
+using observers = observer_list<Model, Method, S, sampler<Model, Method, S>, summariser<Model, Method, S>,
+                                history_writer<Model, Method, S>>;
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET

@@ -56,6 +56,7 @@ struct summariser {
     MYRIAD_FUNCTION void begin(int i) {
         const lane_data<Model, R> one = detail::extract_lane(s.data, i);
         const inputs<Model, R>& p = one;
+        if constexpr (has_delays<Model>) detail::recall<Model>(one.t, one.y, p);
         const vec<R, m> q = Model::template observe<R>(one.t, one.y, p);
         wait_for_readers();
         static_for<0, n_summary<Model>>([&](auto r) MYRIAD_LAMBDA {
@@ -168,7 +169,11 @@ private:
     template <class T>
     MYRIAD_FUNCTION vec<T, m> observe(const T& t, const vec<T, n>& y) const {
         const inputs<Model, S>& p = s.data;
-        return Model::template observe<T>(t, y, p);
+        if constexpr (has_delays<Model> && std::is_same_v<T, S>) detail::recall<Model>(t, y, p);
+        if constexpr (has_delays<Model> && !std::is_same_v<T, S>)
+            return Model::template observe<T>(t, y, detail::moving_past<Model>(t, y, p));
+        else
+            return Model::template observe<T>(t, y, p);
     }
     template <class T>
     MYRIAD_FUNCTION vec<T, m> observe_at(const step_type& step, const T& theta) const {

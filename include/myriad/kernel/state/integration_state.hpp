@@ -9,6 +9,7 @@
 
 #include "myriad/kernel/scalar/lanes.hpp"
 #include "myriad/kernel/scalar/math.hpp"
+#include "myriad/kernel/state/breaking_state.hpp"
 #include "myriad/kernel/state/kernel_arguments.hpp"
 #include "myriad/kernel/state/slope_cache.hpp"
 #include "myriad/kernel/state/stepping_state.hpp"
@@ -21,7 +22,7 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 template <class Model, class Method, class R>
 inline constexpr bool keeps_time_low = has_events<Model> ||
                                        (is_adaptive<Method> ? std::is_same_v<R, float>
-                                                            : writes_time_domain<Model> || has_stops<Model>);
+                                                            : writes_time_domain<Model> || has_known_stops<Model>);
 
 /// A step of so many times |t| at least is one that t resolves, however it is rounded and shortened a little.
 template <class R>
@@ -48,6 +49,7 @@ struct integration_state {
 
     stepping_state<Method, S> steps;  // of the method's `stepping`, which owns it
     stop_state<Model, S> stops;       // of `stop_driver`, which owns them
+    breaking_state<Model, S> breaks;  // of `breaking_points`, which owns them
 
     // lanes whose phase ends in this iteration of the loop, and how
     mask ended;
@@ -82,7 +84,7 @@ struct integration_state {
 
     /// The time that no step passes: the next stop time, or t_end.
     MYRIAD_FUNCTION const S& t_stop() const {
-        if constexpr (has_stops<Model>) {
+        if constexpr (has_known_stops<Model>) {
             return stops.next;
         } else {
             return data.t_end;

@@ -72,6 +72,16 @@ struct sample_arguments {
     R minimum_spacing;        // of samples by steps
 };
 
+/// The past of instances whose model has delays (model/past.hpp).
+template <class R>
+struct history_arguments {
+    R* ring;               // the steps, and behind them the initial values of the states kept
+    std::uint32_t* jumps;  // of each instance a ring of as many entries as there are slots
+    std::int32_t* place;   // steps stored, and jumps listed
+    std::int32_t slots;    // steps in a ring, a power of two
+    std::int32_t terms;    // numbers of each state kept in a step
+};
+
 /// The parameters shared by all instances, wherever a backend keeps them.
 template <class R>
 struct shared_parameters {
@@ -111,6 +121,7 @@ struct argument_head : instance_range, instance_arrays<array_pointer, R> {
     std::int32_t accumulation_limit;   // actions of one event without its function leaving the tolerance
     record_arguments<R> record;
     sample_arguments<R> sample;
+    history_arguments<R> history;
 };
 
 // The arrays behind the head, whose lengths depend on the model: type, name, and what they have one of. Wider types

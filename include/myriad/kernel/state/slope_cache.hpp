@@ -27,13 +27,13 @@ public:
     /// Interpolants of samples and summaries may use the slope at the end of a step, which is then the first of the
     /// next.
     static constexpr bool knows_end =
-        (samples_trajectory<Method> || has_summaries<Model>)&&interpolates_with_slope_end<Method>;
+        (samples_trajectory<Method> || has_summaries<Model> || has_delays<Model>)&&interpolates_with_slope_end<Method>;
     /// Slopes are kept if the last of a step is the first of the next. Else every trial evaluates its own, a repeated
     /// one too: in a pack or a warp another lane needs it anyway.
     static constexpr bool keeps_start = Method::first_same_as_last || knows_end;
     /// Within a phase too, the slope at the start may have to be evaluated again.
     static constexpr bool loses_start = !Method::first_same_as_last || has_after_step<Model> || has_events<Model> ||
-                                        has_stops<Model> || sees_summaries<Model>;
+                                        has_known_stops<Model> || sees_summaries<Model>;
     /// Evaluations of the right-hand side per trial step.
     static constexpr int evaluations_per_trial = keeps_start ? Method::stages - 1 : Method::stages;
 

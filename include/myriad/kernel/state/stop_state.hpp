@@ -10,7 +10,7 @@
 namespace myriad::detail::inline MYRIAD_TARGET {
 
 /// The next stop of each lane. Empty for a model without stop times.
-template <class Model, class S, bool stops = has_stops<Model>>
+template <class Model, class S, bool stops = has_known_stops<Model>>
 struct stop_state {};
 template <class Model, class S>
 struct stop_state<Model, S, true> {

@@ -2,14 +2,10 @@
 // The state inside a step: from the method's own interpolant if it has one, else from the cubic Hermite polynomial.
 #pragma once
 
+#include "myriad/kernel/methods/dense.hpp"
 #include "myriad/kernel/stepper/step.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
-
-template <class Method>
-inline constexpr bool has_own_interpolant = requires {
-    Method::interpolant_degree;
-};
 
 /// Stages that the interpolant needs besides the stages of the step and the slope at its end.
 template <class Method>

@@ -8,6 +8,7 @@
 #include "myriad/kernel/core/vec.hpp"
 #include "myriad/kernel/methods/weights.hpp"
 #include "myriad/kernel/model/lane.hpp"
+#include "myriad/kernel/model/recall.hpp"
 #include "myriad/kernel/model/rhs_weight.hpp"
 #include "myriad/kernel/scalar/math.hpp"
 #include "myriad/kernel/scalar/select.hpp"
@@ -26,6 +27,7 @@ MYRIAD_CALLED_FUNCTION vec<S, n_state<Model>> call_rhs(MYRIAD_CALL_ARGUMENT(S) t
 template <class Model, class S>
 MYRIAD_FUNCTION vec<S, n_state<Model>> evaluate_rhs(const S& t, const vec<S, n_state<Model>>& y,
                                                     const inputs<Model, S>& p) {
+    if constexpr (has_delays<Model>) detail::recall<Model>(t, y, p);
     if constexpr (calls_rhs<Model, S>) {
         return detail::call_rhs<Model, S>(t, y, p);
     } else {
