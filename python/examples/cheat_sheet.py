@@ -25,6 +25,11 @@ ball = my.model({height: speed, speed: -9.81}, name="ball", accessories={bounces
 ])
 # end of snippet
 
+# snippet: delays
+tau = my.parameter("tau")                             # x(t - tau); before the begin x was 1
+late = my.model({x: -my.delayed(x, tau)}, name="late", history={x: 1})
+# end of snippet
+
 # snippet: solve
 sweep = my.grid({k: np.linspace(0.2, 0.3, 50), x: [-1.0, 1.0], B: 0.3})  # all combinations; my.zip: side by side
 run = my.solve(duffing, sweep, start={v: 0}, time=(0, 2 * np.pi), phases=40,

@@ -48,6 +48,7 @@ from .studies.study import Study as Study, study as study
 from .sweeps.sweep import *  # noqa: F403
 from .symbolic import numpy_functions as numpy_functions
 from .symbolic.axes import *  # noqa: F403
+from .symbolic.delays import *  # noqa: F403
 from .symbolic.distributions import *  # noqa: F403
 from .symbolic.expression import *  # noqa: F403
 from .symbolic.functions import *  # noqa: F403
@@ -66,9 +67,9 @@ _public = ["CppModel", "Damage", "Error", "EventChoice", "Interrupted", "Options
                                "inference.fitting", "inference.least_squares", "inference.likelihood",
                                "models.dose_table", "models.doses", "models.event", "models.sensitivities",
                                "models.tangents", "models.trigger", "models.units", "results.exponents",
-                               "results.sensitivities", "sweeps.sweep", "symbolic.axes", "symbolic.distributions",
-                               "symbolic.expression", "symbolic.functions", "symbolic.interpolate",
-                               "symbolic.symbols", "symbolic.table")
+                               "results.sensitivities", "sweeps.sweep", "symbolic.axes", "symbolic.delays",
+                               "symbolic.distributions", "symbolic.expression", "symbolic.functions",
+                               "symbolic.interpolate", "symbolic.symbols", "symbolic.table")
              for name in _sys.modules[f"{__name__}.{part}"].__all__)]
 # What `from myriad_ode import *` brings: nothing that has the name of a function of Python's, such as abs.
 __all__ = [name for name in _public if not hasattr(_builtins, name)]

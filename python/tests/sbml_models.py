@@ -463,6 +463,52 @@ cases = [
         rate("E_ceases", "1"), event("E_ceases > 0.65", {"queue": "due + 1", "E_side_1": "3"}, delay="0.5", id="E",
                                      persistent=False)],
          {"queue": lambda t: _step(t, 1.15, 1.0, 2.0), "E_side_1": lambda t: _step(t, 1.15, 1.0, 3.0)}),
+    # Delays
+    Case("before the start a delayed value is the initial one", [
+        variable("x", 1), rate("x", "2"), variable("y"), always("y", "3 + delay(x, 0.65)")],
+        {"y": lambda t: 4 + 2 * np.maximum(t - 0.65, 0)}),
+    Case("before the start an initial assignment follows the time", [
+        variable("x"), initially("x", "sin(3 * time)"), rate("x", "1"), variable("y"), always("y", "delay(x, 0.65)")],
+        {"y": lambda t: np.where(t < 0.65, sin(3 * (t - 0.65)), t - 0.65)}),
+    Case("before the start a constant is what its initial assignment says", [
+        parameter("k"), initially("k", "2 + time"), variable("y"), always("y", "delay(k, 0.65)")],
+        {"y": lambda t: np.where(t < 0.65, 1.35 + t, 2.0)}),
+    Case("before the start nothing changes", [
+        variable("x", 1), rate("x", "-0.7 * x"), variable("y"), always("y", "delay(rateOf(x), 0.65)")],
+        {"y": lambda t: np.where(t < 0.65, 0.0, -0.7 * exp(-0.7 * (t - 0.65)))}),
+    Case("a delay of a delay", [
+        variable("x", 1), rate("x", "-0.7 * x"), variable("y"), always("y", "delay(x, 0.25)"), variable("z"),
+        always("z", "delay(2 * y, 0.4)")], {"z": lambda t: 2 * exp(-0.7 * np.maximum(t - 0.65, 0))}),
+    Case("how long a delay is may be delayed itself", [
+        variable("x", 0), rate("x", "1"), variable("y"), always("y", "delay(x, delay(x, 0.65) / 2)")],
+        {"y": lambda t: t - np.maximum(t - 0.65, 0) / 2}),
+    Case("how long a delay is may depend on time", [
+        variable("x", 1), rate("x", "2"), variable("y"), always("y", "delay(x, time / 2)")], {"y": lambda t: 1 + t}),
+    Case("a delayed value jumps where its variable did", [
+        variable("x", 1), event("time >= 0.52", {"x": "4"}), variable("y"), always("y", "delay(x, 0.65)")],
+        {"y": lambda t: _step(t, 1.17, 1.0, 4.0)}),
+    Case("a delayed time", [variable("x", 1), rate("x", "delay(time, 0.5)")], {"x": lambda t: 1 + t**2 / 2 - t / 2}),
+    Case("a delay of zero", [variable("x", 1), rate("x", "-0.7 * delay(x, 0)")], {"x": lambda t: exp(-0.7 * t)}),
+    Case("a delayed value in a rate", [variable("x", 1), rate("x", "-delay(x, 1)")],
+         {"x": lambda t: 1 - t + np.where(t > 1, (t - 1)**2 / 2, 0.0)}),
+    Case("a delayed concentration in a kinetic law", [
+        _c, species("A", amount=6, only_amounts=False), variable("v", 1), rate("v", "0.5"),
+        reaction("R", "A ->", "c * delay(v, 0.65)")],
+        {"A_concentration": lambda t: 3 - t - np.maximum(t - 0.65, 0)**2 / 4}),
+    Case("an event on a delayed value", [
+        variable("x", 0), rate("x", "1"), variable("n", 0), event("delay(x, 0.65) > 0.52", {"n": "n + 1"})],
+        {"n": lambda t: _step(t, 1.17, 0.0, 1.0)}),
+    Case("an event assigns a delayed value from its trigger", [
+        variable("x", 0), rate("x", "1"), variable("y", 0),
+        event("x > 0.82", {"y": "delay(x, 0.65)"}, delay="0.5")], {"y": lambda t: _step(t, 1.32, 0.0, 0.17)}),
+    Case("an event assigns a delayed value from its execution", [
+        variable("x", 0), rate("x", "1"), variable("y", 0),
+        event("x > 0.82", {"y": "delay(x, 0.65)"}, delay="0.5", at_trigger=False)],
+        {"y": lambda t: _step(t, 1.32, 0.0, 0.67)}),
+    Case("ids that are names of what delays have", [
+        variable("lag", 1), variable("history", 2), variable("delayed", 3), rate("lag", "delay(history, 0.5)"),
+        rate("history", "delayed")],
+        {"lag": lambda t: 1 + 2 * t + 1.5 * np.maximum(t - 0.5, 0)**2, "history": lambda t: 2 + 3 * t}),
     Case("ids that differ by underscores", [variable("x", 1), variable("x_", 2), variable("_x", 3), rate("x", "x_"),
                                             rate("_x", "x")],
          {"x": lambda t: 1 + 2 * t, "_x": lambda t: 3 + t + t**2}),
@@ -471,7 +517,8 @@ cases = [
 # What is refused: a model and what the message says.
 refused = [
     ([variable("x", 1), Part("Rules", element("algebraicRule", math("x - time")))], "algebraicRule"),
-    ([variable("x", 1), variable("y"), always("y", "delay(x, 1)")], "a delay, in assignmentRule 'y' (line "),
+    ([variable("x", 1), variable("y"), always("y", "delay(x, -1)")], "a delay of -1, in assignmentRule 'y' (line "),
+    ([variable("x", 1), rate("x", "delay(x, delay(x, 1))")], "a delay that is a delayed value itself"),
     ([variable("x", 1), event("time > 1", {"x": "2"}, delay="-0.5", id="earlier")], "event 'earlier' (line "),
     ([variable("x", 1), event("time > 1", {"x": "2"}, persistent=False), event("x < 1.5 && time > 1", {"x": "3"}),
       Part("Rules", element("rateRule", variable="y"))], "no valid SBML"),

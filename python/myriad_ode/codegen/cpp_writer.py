@@ -33,12 +33,19 @@ def _depends_on_instance(node: Node) -> bool:
     return any(n.op == "symbol" and n.value[0] not in ("shared", "shared_integer") for n in walk([node]))
 
 
+def _kinds_in(roots: Sequence[Node]) -> set[str]:
+    """The kinds of components that some expressions read."""
+    used = [node for node in walk(roots) if node.op in ("symbol", "element", "dot", "lookup", "find_interval")]
+    return {node.value[0] if node.op == "symbol" else "shared" for node in used}
+
+
 class Writer:
     """Writes one model."""
 
     def __init__(self, model: RecordedModel, names: Names | None = None) -> None:
         self.model = model
         self.names = names or Names(model)
+        self.delayed = {one.symbol: one.name for one in model.delays}
 
     def header(self, name: str) -> str:
         model = self.model
@@ -75,6 +82,8 @@ class Writer:
             blocks.append(self.function("events", "n_event", [e.function for e in model.events]))
         if model.observed:
             blocks.append(self.function("observe", "n_observed", [q for _, q in model.observed]))
+        if model.delays:
+            blocks += self.past()
         if model.initialise:
             blocks.append(self.hook("initialise", model.initialise))
         if model.after_step:
@@ -132,6 +141,8 @@ class Writer:
         names, (kind, name) = self.names, node.value
         if kind == "built-in":
             return names.t if name == "time" else f"{names.R}({names.number})"
+        if kind == "delayed":
+            return f"{names.p}.delayed[{self.delayed[node]}]"
         prefix = {"state": names.y, "parameter": names.p}.get(kind, f"{names.p}.{kind}")
         return f"{prefix}[{name}]"
 
@@ -141,16 +152,12 @@ class Writer:
         rows have that length, and whose entries are given row after row."""
         n = self.names
         body = Body(roots, n, self.in_function, scalar=False)
-        values = []
-        for root in roots:
-            value = body.text(root)
-            values.append(value if _depends_on_instance(root) or value.startswith(n.R + "(") else f"{n.R}({value})")
+        values = [self.real_text(body, root) for root in roots]
         kind = n.R
         if row:
             kind, length = f"myriad::vec<{n.R}, {row}>", len(values) // len(self.model.states)
             values = [f"{kind}{{{', '.join(values[i:i + length])}}}" for i in range(0, len(values), length)]
-        used = [node for node in walk(roots) if node.op in ("symbol", "element", "dot", "lookup", "find_interval")]
-        kinds = {node.value[0] if node.op == "symbol" else "shared" for node in used}
+        kinds = _kinds_in(roots)
         arguments = [f"auto {n.t}" if "built-in" in kinds else "auto",
                      f"const myriad::vec<{n.R}, n_state>&" + (f" {n.y}" if "state" in kinds else ""),
                      "const auto&" + (f" {n.p}" if kinds - {"built-in", "state"} else ""), *further]
@@ -169,6 +176,62 @@ class Writer:
                 lines += wrap(value + ",", 8)
             lines[-1] = lines[-1].rstrip(",") + "};"
         return lines + ["}"]
+
+    def real_text(self, body: Body, root: Node) -> str:
+        """The text of an expression, of the type of the state."""
+        value, R = body.text(root), self.names.R
+        return value if _depends_on_instance(root) or value.startswith(R + "(") else f"{R}({value})"
+
+    # The past
+
+    def past(self) -> list[list[str]]:
+        """What a model has for its delayed values: their states, their lags, and what was before the begin."""
+        n, delays, history = self.names, self.model.delays, self.model.history
+        of_state = {one.symbol: history.get(one.symbol.value[1].state) for one in delays}
+        which = f"int {n.number}" if len({one.state for one in delays}) > 1 else "int"
+        blocks = [["/// The state that a delayed value is of.",
+                   f"MYRIAD_FUNCTION static int delayed_state({which}) {{",
+                   *("    " + line for line in self.by_delay([(one.name, [f"return {one.state};"]) for one in delays])),
+                   "}"]]
+        is_constant = all(one.is_constant for one in delays)
+        blocks.append(self.of_past("/// How long ago it was.", "lag", [(one.name, one.lag) for one in delays],
+                                   "p" if is_constant else "typ"))
+        given = [(one.name, before) for one in delays if (before := of_state[one.symbol]) is not None]
+        if given:
+            blocks.append(self.of_past("/// Its value before the begin.", "history", given, "tp"))
+        if 0 < len(given) < len(delays):
+            named = wrap(f"return {' || '.join(f'{n.number} == {name}' for name, _ in given)};", 4)
+            blocks.append(["/// Others had their initial value.",
+                           f"MYRIAD_FUNCTION static bool has_history(int {n.number}) {{", *named, "}"])
+        return blocks
+
+    def by_delay(self, cases: Sequence[tuple[str, list[str]]]) -> list[str]:
+        """Statements of several delayed values, the last for all others; those that are equal once."""
+        lines: list[str] = []
+        last = cases[-1][1]
+        for name, statements in cases[:-1]:
+            if statements == last:
+                continue
+            start = f"if ({self.names.number} == {name}) "
+            several = [start + "{", *("    " + line for line in statements), "}"]
+            lines += [start + statements[0]] if len(statements) == 1 else several
+        return [*lines, *last]
+
+    def of_past(self, what: str, name: str, values: Sequence[tuple[str, Node]], wanted: str) -> list[str]:
+        """A function of the number of a delayed value and of some of the time t, the state y and the inputs p."""
+        n, cases = self.names, []
+        for delayed, value in values:
+            body = Body([value], n, self.in_function, scalar=False)
+            cases.append((delayed, [*body.lines, f"return {self.real_text(body, value)};"]))
+        lines, kinds = self.by_delay(cases), _kinds_in([value for _, value in values])
+        is_read = any(re.search(rf"\b{n.number}\b", line) for line in lines)
+        known = {"t": f"const {n.R}&" + (f" {n.t}" if "built-in" in kinds else ""),
+                 "y": f"const myriad::vec<{n.R}, n_state>&" + (f" {n.y}" if "state" in kinds else ""),
+                 "p": "const auto&" + (f" {n.p}" if kinds - {"built-in", "state"} else "")}
+        arguments = ", ".join([f"int {n.number}" if is_read else "int", *(known[one] for one in wanted)])
+        return [what, f"template <class {n.R}>",
+                *wrap(f"MYRIAD_FUNCTION static {n.R} {name}({arguments}) {{", 0),
+                *(wrapped for line in lines for wrapped in wrap(line, 4)), "}"]
 
     def stop_time(self) -> list[str]:
         """The function with the times of all stops, of which each has a number."""
@@ -203,6 +266,8 @@ class Writer:
         lane, (kind, name) = self.names.lane, node.value
         if kind == "built-in":
             return f"{self.names.R}({self.names.number})" if name == "stop_number" else f"{lane}.{_headers[name]}"
+        if kind == "delayed":
+            return f"{lane}.delayed[{self.delayed[node]}]"
         if kind == "waiting":
             return f"{self.names.taken_action}.value[{name}]"
         member = {"state": "y"}.get(kind, kind)

@@ -32,7 +32,7 @@ def model(equations: ByComponent | Callable[..., Any] | str, *, events: Event | 
           after_step: ByComponent | None = None, finalise: ByComponent | None = None,
           generate: ByComponent | None = None, states: Names | None = None, parameters: Names = (),
           shared: Names = (), mass_matrix: npt.ArrayLike | ByComponent | None = None,
-          noise: ByComponent | None = None, tie_seed: int | None = None,
+          noise: ByComponent | None = None, history: ByComponent | None = None, tie_seed: int | None = None,
           name: str | None = None, exact_float: bool = False) -> Model:
     """Records a model.
 
@@ -61,6 +61,10 @@ def model(equations: ByComponent | Callable[..., Any] | str, *, events: Event | 
     factors are expressions, as the equations are. For methods of their own with fixed steps, by default
     "euler_maruyama".
 
+    `history` {state: expression of `my.time`, parameters and shared values} is what states were before the begin, where
+    `my.delayed(x, lag)` reads them; a state that is not named had its initial value. It also is the initial value where
+    no other is given.
+
     `tie_seed`, a whole number, puts actions of triggers that are due at one instant with the same priority into an
     order that is random from instance to instance, and follows from it: the same in every run and on every device.
 
@@ -68,7 +72,7 @@ def model(equations: ByComponent | Callable[..., Any] | str, *, events: Event | 
     the faster ones, within 1e-6 (of sine and cosine absolutely); elsewhere it changes nothing.
     """
     return Model(equations, events, accessories, initialise, after_step, finalise, generate, states, parameters, shared,
-                 name, stops, mass_matrix, triggers, tie_seed, exact_float, noise)
+                 name, stops, mass_matrix, triggers, tie_seed, exact_float, noise, history)
 
 
 class Model(RecordedModel):

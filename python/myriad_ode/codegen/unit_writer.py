@@ -357,7 +357,9 @@ class UnitForm(Writer):
 def unit_form(model: RecordedModel) -> UnitForm | None:
     """The model as that of one unit; None if its units are not alike, or have what units do not."""
     units = model.units_of_states
-    if units is None or units.count < 2 or model.triggers or model.queue or model.mass_matrix is not None:
+    if units is None or units.count < 2 or model.delays or model.triggers or model.queue:
+        return None
+    if model.mass_matrix is not None:
         return None
     try:
         form = UnitForm(model, units)

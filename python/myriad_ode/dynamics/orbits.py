@@ -13,6 +13,7 @@ import numpy as np
 
 from ..base.errors import Error, refuse_options
 from ..base.packages import installed
+from ..models import delays
 from ..models.any_model import AnyModel
 from ..models.components import listed
 from ..models.recorded import RecordedModel
@@ -196,6 +197,8 @@ def _refuse(model: AnyModel, options: Mapping[str, Any]) -> None:
     if model.has_noise:
         raise Error("the model has noise, and an orbit with noise comes to no attractor: leave noise= out, or look at "
                     "histograms of a study")
+    delays.refuse(model, "attractors", "follow it by phases of one call, as a state alone does not say where its orbit "
+                  "goes on")
     if model.free or isinstance(model, WithTangents):
         raise Error("the model has tangents or sensitivities: give the model itself, and exponents=True")
     if model.writes_parameters:

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..base import component_kinds as kinds
 from ..base.errors import Error
+from ..models import delays
 from ..models.components import Components, name_of
 from ..models.recorded import RecordedModel
 from ..sweeps.inputs import numbers, real
@@ -81,6 +82,8 @@ class Equations:
         if not isinstance(model, RecordedModel):
             raise Error("steady states need the model's derivatives, and this model is not recorded in Python: make it "
                         "by my.model(...)")
+        delays.refuse(model, "steady states", "find those of the model without delays; whether they are stable is "
+                      "another matter")
         if model.mass_matrix is not None:
             raise Error("the model has a mass matrix, with which the eigenvalues are others: solve its algebraic "
                         "equations in the others")

@@ -19,7 +19,7 @@ from ..codegen.adjoint_writer import adjoint_source, no_adjoint
 from ..codegen.model import Model
 from ..kernels import compiled_files, compiler, nvrtc
 from ..kernels.devices import device_names
-from ..models import state_jumps
+from ..models import delays, state_jumps
 from ..models.components import Components
 from ..models.event import Event, Stop
 from ..models.methods import default
@@ -173,6 +173,7 @@ def _checked(model: AnyModel, by: Sequence[str]) -> Model:
     if not isinstance(model, Model):
         raise no_adjoint("the model is not traced from Python, but written in C++ or made of another")
     refuse_derivatives(model, "derivatives")
+    delays.refuse(model, "derivatives")
     if model.mass_matrix is not None:
         raise no_adjoint("the model has a mass matrix")
     if model.triggers or model.queue is not None:

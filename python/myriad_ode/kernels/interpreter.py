@@ -36,6 +36,8 @@ def library(model: AnyModel, components: Components, method: str) -> _core.Libra
         raise _refuse(model.not_interpreted)
     if model.noise is not None:
         raise _refuse("it has noise")
+    if model.delays:
+        raise _refuse("it has delays")
     if method not in methods:
         raise _refuse(f"the interpreter has the methods {', '.join(methods)} alone")
     if model.mass_matrix is not None:
@@ -124,7 +126,7 @@ def _tape(writer: Writer, model: RecordedModel, lengths: list[int], entries: lis
 def give_model(library: _core.Library, model: AnyModel, components: Components, method: str) -> None:
     """Gives checks and notes of a GPU's program the functions of a traced model, unless they are beyond the
     interpreter."""
-    if not isinstance(model, RecordedModel) or model.noise is not None:
+    if not isinstance(model, RecordedModel) or model.noise is not None or model.delays:
         return
     writer = Writer(components)
     try:

@@ -43,6 +43,7 @@ class AnyModel(ComponentNames):
     edges: Sequence[Any] = ()  # of conditions of triggers
     noise: Any = None  # a `Noise`
     has_noise: bool | None = False  # None where only a compiler knows
+    delays: Sequence[Any] | None = ()  # a `Delay` each; None where only a compiler knows
     mass_matrix: npt.NDArray[np.floating[Any]] | None = None
     writes_parameters = writes_time_domain = False  # whether a hook does
     jumps_to_miss: Sequence[str] = ()  # where equations and events jump and no step ends
@@ -54,6 +55,8 @@ class AnyModel(ComponentNames):
     is_from_a_file = False
     aliases: Mapping[str, str] = {}  # components by other names
     outputs: Mapping[str, Any] = {}  # what a run computes from its results, as expressions
+    past_outputs: Mapping[str, Any] = {}  # those that read values of the past
+    history_of_outputs: Mapping[str, Any] = {}  # what these read from before the begin, by state, as expressions
     constants: Mapping[Any, Any] = {}  # values of symbols in outputs that are no components
     conserved: Mapping[str, str] = {}  # by state, a parameter: a sum with it, from which what is left out follows
     units: Mapping[str, str] = {}  # texts by component or output

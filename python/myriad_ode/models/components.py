@@ -78,6 +78,7 @@ class Components:
         self.tables = model.shared_values  # shared values that the model itself has
         self.defaults = {**self.tables, **model.defaults}  # of components that need not be given
         self.aliases, self.outputs, self.constants = model.aliases, model.outputs, model.constants
+        self.past_outputs, self.history_of_outputs = model.past_outputs, model.history_of_outputs
         self.units, self.time_unit = model.units, model.time_unit
         self.generated = list(model.generated)  # components that the model sets in a study
         self.writes_parameters = model.writes_parameters

@@ -35,6 +35,7 @@ class CppModel(AnyModel):
     generated: tuple[str, ...] = ()
     generator = ""
     has_noise = None
+    delays = None
 
     def __init__(self, text: str, struct: str, states: Names, parameters: Names = (), shared: Names = (),
                  shared_integers: Names = (), accessories: Names = (), integer_accessories: Names = (),

@@ -9,7 +9,7 @@ from html import escape
 from typing import TYPE_CHECKING, Any
 
 from ..base import component_kinds as kinds
-from ..symbolic.latex import expressions_latex, names_latex, plain
+from ..symbolic.latex import difference_latex, expressions_latex, names_latex, plain
 from ..symbolic.node import Node
 from ..symbolic.symbols import symbol as symbol_of
 from .any_model import names_of
@@ -44,6 +44,9 @@ def _lines(model: Any, mass_matrix: Any) -> list[str]:
         kind, name = node.value
         if kind == "built-in":
             return _counter(model) if name == "stop_number" else _built_in[name]
+        if kind == "delayed":
+            (lag,), _ = expressions_latex([name.lag], symbol, "")
+            return rf"{symbol(name.state)}\left({difference_latex('t', lag)}\right)"
         if kind == "event_count":
             return rf"N_{{\mathrm{{{plain(name)}}}}}"
         return _actions[name] if kind == "action" else names.get(name, rf"\mathrm{{{plain(name)}}}")
@@ -69,7 +72,7 @@ def _content(model: Any, mass_matrix: Any, write: _Write) -> list[str]:
     """The lines of the model. `write` gets expressions, always in the same order."""
     quantities, counter = dict(model.observed), _counter(model)
     own = [one.as_given for one in model.triggers if one.as_given is not None]
-    return [*_equations(model, mass_matrix, write),
+    return [*_equations(model, mass_matrix, write), *_history(model, write),
             *(_summary(one, quantities[one.observed], write) for one in model.summaries),
             *_hook("at the start of a phase", model.initialise, write),
             *_hook("after a step", model.after_step, write), *_hook("at the end of a phase", model.finalise, write),
@@ -139,6 +142,11 @@ def _assigned(assignments: Assignments, write: _Write) -> str:
 
 def _hook(when: str, assignments: Assignments, write: _Write) -> list[str]:
     return [rf"\text{{{when}:}} & \; {_assigned(assignments, write)}"] if assignments else []
+
+
+def _history(model: Any, write: _Write) -> list[str]:
+    known = ", \\; ".join(f"{write(state)} = {write(value)}" for state, value in model.history.items())
+    return [rf"\text{{before the begin:}} & \; {known}"] if known else []
 
 
 def _then(assignments: Assignments, write: _Write) -> str:

@@ -12,6 +12,7 @@ from ..symbolic.derivatives import dependencies
 from ..symbolic.expression import constant
 from ..symbolic.node import Node, text
 from ..symbolic.numbers import is_whole
+from .delays import refuse_method
 from .methods import additive_noise, default, diagonal_noise, methods, stochastic
 
 if TYPE_CHECKING:
@@ -179,6 +180,7 @@ def method_for(model: AnyModel, method: str | None, precision: str) -> str:
     """The method of a call, or the default for the model. Refuses one that does not take the model's noise."""
     if method is None:
         method = stochastic[0] if model.has_noise else default
+    refuse_method(model, method)
     if model.has_noise is None or method not in methods:  # only a compiler knows; others refuse it
         return method
     if not model.has_noise:

@@ -14,6 +14,7 @@ from ..base import component_kinds as kinds
 from ..base.errors import Error, at
 from ..symbolic import symbols as sym
 from ..symbolic.axes import Axis
+from ..symbolic.delays import read_now_or_then
 from ..symbolic.expression import as_condition, as_number, is_sympy, to_real
 from ..symbolic.node import Node, integer, real, symbols_of, text
 from ..symbolic.read_text import from_sympy, parse, parse_equations, sympy_name
@@ -232,7 +233,7 @@ class Reader:
                  ) -> tuple[list[Trigger], list[Event]]:
         """Triggers, and the events at which their conditions change."""
         moving = {sym.time, *(s for s, rate in rates.items() if rate.value != 0)}
-        sides = Sides(lambda condition: not moving.intersection(symbols_of([condition])))
+        sides = Sides(lambda condition: not moving.intersection(read_now_or_then([condition])))
         made = []
         for i, given in enumerate([triggers] if isinstance(triggers, Trigger) else triggers):
             if not isinstance(given, Trigger):
@@ -276,7 +277,8 @@ class Reader:
             quantity = to_real(self._real(self.value(value.quantity, "accessories"),
                                           f"the quantity of {target.value[1]}"))
             if id(quantity) not in quantities:
-                short = quantity.value[1] if quantity.op == "symbol" else target.value[1]
+                is_named = quantity.op == "symbol" and quantity.value[0] != "delayed"
+                short = quantity.value[1] if is_named else target.value[1]
                 quantities[id(quantity)] = f"observed_{short}"
                 made_of.observed.append((f"observed_{short}", quantity))
             made = Summary(value.kind, quantity)

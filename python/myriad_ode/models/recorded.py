@@ -12,6 +12,7 @@ import numpy as np
 from ..base import component_kinds as kinds
 from ..base.errors import Error, at, users_line
 from ..symbolic import symbols as sym
+from ..symbolic.delays import pasts_of
 from ..symbolic.evaluate import evaluate
 from ..symbolic.folding import add, constant, multiply
 from ..symbolic.functions import draws
@@ -19,6 +20,7 @@ from ..symbolic.node import Node, symbols_of, text, walk
 from ..symbolic.table import tables_of
 from ..symbolic.whole_and_real import generic_problem
 from .any_model import AnyModel, names_of
+from . import delays
 from .components import name_of
 from .dose_table import DoseTable
 from .doses import Doses
@@ -53,7 +55,8 @@ class RecordedModel(AnyModel):
                  shared: Names, name: str | None, stops: Stop | Sequence[Stop] = (),
                  mass_matrix: npt.ArrayLike | ByComponent | None = None,
                  triggers: Trigger | Sequence[Trigger] = (), tie_seed: int | None = None,
-                 exact_float: bool = False, noise: ByComponent | None = None) -> None:
+                 exact_float: bool = False, noise: ByComponent | None = None,
+                 history: ByComponent | None = None) -> None:
         self.line = users_line()
         self.exact_float = exact_float
         self.hidden: frozenset[str] = frozenset()  # accessories that no user has named
@@ -77,6 +80,7 @@ class RecordedModel(AnyModel):
             self.hidden = frozenset(self.queue.accessories + self.queue.integers)
         self.noise = read_noise(reader, noise, targets)
         self.has_noise = self.noise is not None
+        self.history = delays.read_history(reader, history, targets)  #: of states, before the begin
         start, self.summaries, self.observed, self._accessory_targets = reader.accessories(accessories)
         self.initialise: Assignments = start + reader.assignments(initialise, "initialise", {t for t, _ in start})
         self.after_step = reader.assignments(after_step, "after_step")
@@ -91,6 +95,8 @@ class RecordedModel(AnyModel):
         if self.noise is not None:
             refuse_parts(self)
         self.name = self._default_name(equations) if name is None else sym.check_name(name, "a model")
+        if self.history:
+            self.defaults = {state.value[1]: value for state, value in self.history.items()}
         self._check()
 
     def _default_name(self, equations: object) -> str:
@@ -262,8 +268,11 @@ class RecordedModel(AnyModel):
         waits = [e for t in self.triggers for e in (t.delay, t.priority, *t.values) if e is not None]
         self._functions = self.rhs + [e.function for e in self.events] + [q for _, q in self.observed]
         self._functions += self.noise.factors if self.noise is not None else []
+        pasts = pasts_of([*self._functions, *waits, *(e for _, assignments in hooks for _, e in assignments)])
+        self._functions += [*(past.value[1].lag for past in pasts), *(self.history.values() if pasts else ())]
         self._in_functions = symbols_of(self._functions)
         found = targets + self._in_functions + symbols_of(times) + self._accessory_targets
+        found += [past.value[1].state for past in pasts]
         for _, assignments in hooks:
             found += [t for t, _ in assignments] + symbols_of([e for _, e in assignments])
         found += symbols_of(waits)
@@ -307,12 +316,19 @@ class RecordedModel(AnyModel):
         self.accessories_are_outputs = any(components[kind] for kind in kinds.accessories) and not (
             self.queue or read & {*kinds.accessories})
         self._hooks = hooks
+        self.delays: list[delays.Delay] = []
+        taken = [*self.component_names, *self._reserved]
+        for one in delays.delays_of(pasts):
+            number = 1 + sum(other.state == one.state for other in self.delays)
+            taken.append(sym.free_name(f"{one.state}_past" + (f"_{number}" if number > 1 else ""), taken))
+            self.delays.append(one._replace(name=taken[-1]))
 
     def enumerations(self) -> list[tuple[str, list[str]]]:
         """(kind, names) of everything that has an enumeration in C++."""
         shared = self.scalar_shared + [name for t in self.tables for name in (t.name, f"{t.name}_last")]
         return [*{**names_of(self), "shared": shared}.items(), ("observed", [n for n, _ in self.observed]),
                 ("noise", [] if self.noise is None else self.noise.names),
+                ("delayed", [one.name for one in self.delays]),
                 ("stop", self.stop_names),
                 ("trigger", [e.name for e in self.edges])]
 
@@ -360,11 +376,13 @@ class RecordedModel(AnyModel):
         for what, members, present in (
                 ("stops", "stop stop_time", len(self.stop_names) - len(self.switches.switches)),
                 ("triggers", "trigger condition after_trigger initial_value persistent queue", self.triggers),
-                ("noise", "noise n_noise diffusion additive_noise", self.noise)):
+                ("noise", "noise n_noise diffusion additive_noise", self.noise),
+                ("delays", " ".join(delays.own_names), self.delays)):
             taken = next((n for n in members.split() if n in kind_of), None)
             if taken is not None and present:
                 raise Error(f"'{taken}' names {sym.a(kind_of[taken])}{at(self.line)}, and has a meaning of its own in "
                             f"a model with {what}: call it '{taken}_'")
+        delays.check(self)
         if self.name in kind_of:
             raise Error(f"the model has the name of its {kind_of[self.name]} '{self.name}'{at(self.line)}: give "
                         "it another one, name='...'")
@@ -379,6 +397,7 @@ class RecordedModel(AnyModel):
     def derivatives(self, t: npt.ArrayLike, y: Any, **values: Any) -> Array:
         """The right-hand side f by NumPy: y has one entry per state, each a number or an array; parameters and shared
         values are given by name. For looking at a model and for tests; SciPy can integrate it."""
+        delays.refuse(self, "their slopes by NumPy", "integrate it by my.solve, whose equations know the past")
         known = {sym.time: t, **{sym.symbol("state", n): v for n, v in zip(self.states, y)}}
         for symbol in symbols_of(self.equations.values()):
             kind, name = symbol.value

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from ..base.errors import Error, at, users_line
 from ..symbolic.node import Node
 from ..symbolic.symbols import t_begin, t_end
-from . import state_jumps
+from . import delays, state_jumps
 from .components import Components, listed, unknown
 from .extended import Extended
 from .noise import refuse_derivatives
@@ -60,6 +60,7 @@ class WithSensitivities(Extended):
             raise Error(f"the model has {'sensitivities' if isinstance(model, WithSensitivities) else 'tangents'} "
                         f"already{line}: give the model alone")
         refuse_derivatives(model, "derivatives")
+        delays.refuse(model, "derivatives")
         if model.mass_matrix is not None:
             raise Error(f"the model has a mass matrix{line}, with which initial values of algebraic states would not "
                         "be independent: solve its algebraic equations in the others")

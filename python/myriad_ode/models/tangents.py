@@ -9,7 +9,7 @@ import numpy as np
 
 from ..base.errors import Error, at, users_line
 from ..symbolic.numbers import is_whole
-from ..symbolic.symbols import symbol
+from . import delays
 from .extended import Extended
 from .noise import refuse_derivatives
 from .recorded import RecordedModel
@@ -24,16 +24,17 @@ __all__ = ["with_tangents"]
 def with_tangents(model: AnyModel, vectors: int = 1, *, transient_phases: int = 0) -> WithTangents:
     """The model with tangent vectors: one gives the largest Lyapunov exponent, as many as there are states the full
     spectrum. They are orthonormalised at the end of every phase, and their growth is summed over the phases that follow
-    the first `transient_phases`: `exponents(run)` has the result, and so have datasets, tables and files, as
-    "exponent_1_end", "exponent_2_end", ... Phases should be short enough
+    the first `transient_phases`: `exponents(run)` has the result, and so have runs, studies, their datasets, tables and
+    files, as "exponent_1_end", "exponent_2_end", ... Phases should be short enough
     (docs/writing_a_model.md). The number is a shared integer of the model, so that a sweep may set it anew, by its
     name."""
     return WithTangents(model, vectors, transient_phases)
 
 
 class WithTangents(Extended):
-    """A model with tangent vectors. Component c of tangent i is the state `<c>_tangent_<i>`, the growth of tangent i
-    the accessory `growth_<i>`, and its exponent the output `exponent_<i>`, counted from 1."""
+    """A model with tangent vectors. Component c of tangent i is the state `<c>_tangent_<i>`, its exponent the accessory
+    `exponent_<i>`, counted from 1, and the sum that this follows from the accessory `growth_<i>`, which results have
+    only if it is named."""
 
     not_interpreted = "it has tangents"
 
@@ -45,6 +46,7 @@ class WithTangents(Extended):
             raise Error(f"transient_phases is {transient_phases!r}{at(users_line())}: give the number of phases that "
                         "do not count, 0 or more")
         refuse_derivatives(model, "tangents")
+        delays.refuse(model, "tangents")
         if model.mass_matrix is not None:
             raise Error(f"the model has a mass matrix{at(users_line())}, with which tangents of algebraic states would "
                         "not be independent: solve its algebraic equations in the others")
@@ -57,7 +59,7 @@ class WithTangents(Extended):
         self.vectors = int(vectors)
         numbers = range(1, self.vectors + 1)
         tangents = [f"{state}_tangent_{i}" for i in numbers for state in model.states]
-        growth = [f"growth_{i}" for i in numbers]
+        growth, exponents = [f"growth_{i}" for i in numbers], [f"exponent_{i}" for i in numbers]
         # The same orthonormal vectors for all instances, columns of a reflection that no symmetry leaves invariant.
         # With the rounding of the C++ library's `initial_tangents`.
         golden = 0.6180339887498949 * np.arange(1, n + 1)
@@ -65,10 +67,10 @@ class WithTangents(Extended):
         mirror /= np.sqrt(sum(mirror * mirror))
         start = np.eye(n) - 2 * mirror[:, None] * mirror
         defaults = {"transient_phases": int(transient_phases), **dict(zip(tangents, start[:, :self.vectors].T.ravel()))}
-        time_summed = symbol("accessory", "time_summed")
-        exponents = {f"exponent_{i}": symbol("accessory", name) / time_summed for i, name in zip(numbers, growth)}
-        super().__init__(model, {"state": tangents, "shared_integer": ["transient_phases"],
-                                 "accessory": [*growth, "time_summed", "phase_began"]}, defaults, "tangents", exponents)
+        accessories = [*growth, "time_summed", "phase_began", *exponents]
+        super().__init__(model, {"state": tangents, "shared_integer": ["transient_phases"], "accessory": accessories},
+                         defaults, "tangents")
+        self.hidden |= {*growth, "phase_began"}
 
     def source(self) -> tuple[str, str]:
         """The text that kernels are compiled from, and the name of its struct."""

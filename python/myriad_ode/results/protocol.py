@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 if TYPE_CHECKING:
@@ -59,6 +59,12 @@ class Results(Protocol):
     def records(self) -> dict[str, Array]: ...
     @property
     def samples(self) -> dict[str, Array]: ...
+    @property
+    def parameters(self) -> dict[str, Array]: ...
+    @property
+    def shared(self) -> dict[str, Any]: ...
+    @property
+    def _outputs(self) -> Mapping[str, Node]: ...
     @property
     def _called(self) -> dict[str, str]: ...
     @property

@@ -110,7 +110,7 @@ def _outputs(run: Results, along: str | None, ending: str) -> dict[str, Quantity
     components = run._components
     return {run._called[name] + ending: Quantity(functools.partial(run._output_at, along, expression), along,
                                                  unit=components.units.get(name, ""))
-            for name, expression in components.outputs.items()
+            for name, expression in run._outputs.items()
             if along is None or along in run._places_of(expression)}
 
 

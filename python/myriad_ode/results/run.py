@@ -16,11 +16,13 @@ from ..models.components import name_of
 from ..sweeps.gpu_inputs import DeviceInput
 from ..sweeps.inputs import path_text
 from ..sweeps.sweep import Sweep
+from ..symbolic.delays import pasts_of
 from ..symbolic.evaluate import evaluate
 from ..symbolic.node import Node, symbols_of
 from ..symbolic.symbols import time
 from . import conversions, saved_file
 from .gpu_results import DeviceResults
+from .past_states import PastStates
 from .protocol import Quantity
 from .quantities import called, listed, names_of_symbol, of_component, quantities_of, times, unknown_quantity
 from .report import Report
@@ -55,10 +57,10 @@ class Run(Mapping):
     def __init__(self, components: Components, ensemble: Any, report: Any, kernel: Any, sweep: Any,
                  inputs: dict[str, Any], domain: tuple[Any, Any], recorded: dict[str, tuple[str, int]],
                  sampled: dict[str, int], seconds: float, record: Any, notes: Sequence[str] = (),
-                 describe: Callable[[], dict[str, Any]] = dict) -> None:
+                 describe: Callable[[], dict[str, Any]] = dict, past: PastStates | None = None) -> None:
         self._components, self._ensemble, self._records = components, ensemble, report
         self._recorded, self._sampled, self._inputs, self._domain = recorded, sampled, inputs, domain
-        self._records_time, self._describe = record.time, describe
+        self._records_time, self._describe, self._past = record.time, describe, past
         self.sweep = sweep if isinstance(sweep, Sweep) else None
         self.report = Report(report, kernel, seconds, notes)
         self.from_phase = record.from_phase  #: number of the first recorded phase
@@ -211,12 +213,18 @@ class Run(Mapping):
         take without a copy."""
         return DeviceResults(self)
 
+    @property
+    def _outputs(self) -> Mapping[str, Node]:
+        """The outputs of the model, as expressions, with those that read the past where that is known."""
+        components = self._components
+        return {**components.outputs, **components.past_outputs} if self._past is not None else components.outputs
+
     @functools.cached_property
     def _called(self) -> dict[str, str]:
         """What results call components and outputs."""
         components = self._components
         return called({kind: [name for name in names if name not in components.tables]
-                       for kind, names in components.names.items()}, components.outputs)
+                       for kind, names in components.names.items()}, self._outputs)
 
     @functools.cached_property
     def _quantities(self) -> dict[str, Quantity]:
@@ -265,9 +273,9 @@ class Run(Mapping):
 
     def _places_of(self, expression: Node) -> list[str | None]:
         """Where the values of an expression are known: along "phase" or "sample", and None for the end."""
-        symbols = symbols_of([expression])
+        symbols = symbols_of([expression, *(one.value[1].lag for one in pasts_of([expression]))])
         changing = [s.value[1] for s in symbols if s.value[0] in kinds.recorded]
-        of_time = any(s is time for s in symbols)
+        of_time = any(s is time or s.value[0] == "delayed" for s in symbols)
         places: list[str | None] = [None]
         if self._sampled and (changing or of_time) and all(n in self._sampled for n in changing):
             places.insert(0, "sample")
@@ -287,8 +295,11 @@ class Run(Mapping):
         else:
             at, changing, shape = self["t_last"], self._last_values(kinds.recorded), (self.size,)
         known: dict[Any, Any] = {}
-        for symbol in symbols_of([expression]):
+        pasts = pasts_of([expression])
+        for symbol in symbols_of([expression, *(one.value[1].lag for one in pasts)]):
             kind, name = symbol.value
+            if kind == "delayed":
+                continue
             if symbol in self._components.constants:
                 known[symbol] = self._components.constants[symbol]
             elif symbol is time:
@@ -299,6 +310,10 @@ class Run(Mapping):
                 known[symbol] = self.parameters[name][:, None] if place else self.parameters[name]
             else:
                 known[symbol] = self.shared[name]
+        for one in pasts:
+            assert self._past is not None  # as these are no outputs otherwise
+            lag, = evaluate([one.value[1].lag], known)
+            known[one] = self._past(self, one.value[1].state.value[1], np.broadcast_to(at - lag, shape))
         result, = evaluate([expression], known)
         return np.array(np.broadcast_to(result, shape))
 

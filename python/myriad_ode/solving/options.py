@@ -78,6 +78,7 @@ class StudyArguments(TypedDict, total=False):
     phase_length: float
     carry_on_step: bool
     noise_step: float
+    history_steps: int
     events: Mapping[Component, EventChoice] | None
     sub_samples: int
     accumulation_limit: int
@@ -119,6 +120,8 @@ class Options:
     seed: seed of the paths of a stochastic equation (in [0, 4294967295])
     noise_step: cells of these paths: steps that are a multiple of one, or a number of 65536ths of one, follow the same
         path; 0: the step (in [0, inf), in the model's unit of time)
+    history_steps: steps of the past that are kept of each instance of a model with delays; 0: 256 adaptive steps, 1024
+        fixed ones (in [0, 1048576], in steps)
     events: how events are detected: one entry for each; none: defaults for all
     sub_samples: points per step at which event functions are evaluated, and with two or more also where they turn: what
         crosses zero and comes back within a step is found (in [1, 10000])
@@ -148,6 +151,7 @@ class Options:
     carry_on_step: bool = False
     seed: int = 0
     noise_step: float = 0
+    history_steps: int = 0
     events: Mapping[Component, EventChoice] | None = None
     sub_samples: int = 1
     accumulation_limit: int = 50

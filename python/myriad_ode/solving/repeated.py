@@ -31,6 +31,8 @@ def repeated_call(model: AnyModel, given: Sequence[str], results: Sequence[Seque
     instance has; None for what is there at the end. The other arguments are those of `solve`. Returns None if only
     `solve` can do it: not on one CPU, if anything else differs between instances or follows from what is given, or if
     a quantity is no array of the core's."""
+    if model.delays:  # whose instances have a past
+        return None
     own = {**options}
     left_out = [own.pop(name, None) for name in _left_out]
     if any(value is not None and value is not False for value in left_out):

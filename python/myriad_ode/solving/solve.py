@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+import functools
 import time as clock
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
@@ -17,11 +19,13 @@ from ..kernels.devices import device_names
 from ..models import time_jumps
 from ..models.any_model import AnyModel
 from ..models.components import Components
+from ..models.delays import refuse_history_steps
 from ..models.methods import fixed_step, method_type
 from ..models.noise import count_of_paths, method_for, refuse_options_of_paths
 from ..models.once_per_phase import prepared
 from ..models.sensitivities import WithSensitivities, note_on, with_sensitivities
 from ..results.no_instances import EmptyEnsemble, EmptyReport, kernel as no_kernel
+from ..results.past_states import PastStates
 from ..results.report import Interrupted
 from ..results.run import Run
 from ..results.sensitivities import note
@@ -48,6 +52,7 @@ class Call:
     report: Any
     kernel: Any
     failure: BaseException | None
+    past: PastStates | None = None  # for outputs that read it
 
     def __init__(self, model: AnyModel, method: Method | None, control: Control | Sequence[Control],
                  precision: Precision, free: SomeComponents | None, sensitivity_control: bool) -> None:
@@ -79,6 +84,7 @@ class Call:
         self.options = options
         method_type(self.method, self.control, options.samples is not None)  # refuses what does not exist
         refuse_options_of_paths(self.method, options.seed, options.noise_step)
+        refuse_history_steps(self.model, options.history_steps)
         if self.method in fixed_step and options.step is None:
             raise Error(f"{self.method} takes fixed steps: give step=")
         self.core_options, self.recorded, self.sampled = make_options(self.components, self.count, options)
@@ -154,7 +160,7 @@ class Call:
         notes = (note_of_device, time_jumps.note(self.model, longest_step(self.options)), note_on(self.model))
         run = Run(self.components, self.ensemble, self.report, self.kernel, self.sweep, self.given, self.domain,
                   self.recorded, self.sampled, seconds, self.core_options.record, [one for one in notes if one],
-                  self.describe)
+                  self.describe, self.past)
         if isinstance(self.model, WithSensitivities) and self.count and (undefined := note(run)) is not None:
             run.report.notes.append(undefined)
         if isinstance(self.failure, KeyboardInterrupt):
@@ -230,6 +236,12 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
     call.gather(sweep, start, time, size, given, paths)
     if call.count == 0:
         return call.run_of_none()
+    if call.components.past_outputs and given.phases == 1:
+        again = functools.partial(solve, model, sweep, start=start, time=time, method=method, control=control,
+                                  tolerance_scale=tolerance_scale, size=size, paths=paths, precision=precision,
+                                  device=device, interpreted=interpreted, make_consistent=make_consistent)
+        call.past = PastStates(lambda times: again(
+            options=dataclasses.replace(given, samples={"times": times}, record=None)).samples)
     call.prepare(devices, interpreted)
     call.integrate(devices, tolerance_scale, make_consistent, progress)
     return call.run(clock.perf_counter() - begin, no_gpu)

@@ -24,6 +24,7 @@ from ..kernels.devices import device_names
 from ..models import time_jumps
 from ..models.any_model import AnyModel
 from ..models.components import Components, listed, short_name
+from ..models.delays import refuse_history_steps
 from ..models.methods import fixed_step, method_type, stochastic
 from ..models.noise import count_of_paths, method_for, refuse_options_of_paths
 from ..models.once_per_phase import prepared
@@ -89,6 +90,7 @@ class Study:
         seed = whole(options.seed if seed is None else seed, "seed", (1 << 63) - 1)
         options = dataclasses.replace(options, seed=seed if chosen in stochastic else 0)
         refuse_options_of_paths(chosen, options.seed, options.noise_step)
+        refuse_history_steps(model, options.history_steps)
         samples = options.samples
         times: Any = samples.get("times", ()) if isinstance(samples, Mapping) else samples
         if np.ndim(times) > 1:

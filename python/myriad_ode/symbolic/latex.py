@@ -215,6 +215,11 @@ def _sum_latex(left: Latex, right: Latex, is_difference: bool) -> Latex:
     return Latex(f"{left.within(_sum)}{sign}{text}", _sum)
 
 
+def difference_latex(left: str, right: Latex) -> str:
+    """What is left of a name."""
+    return _sum_latex(Latex(left, _atom), right, True).text
+
+
 def _of_table(node: Node, arguments: Sequence[Latex]) -> Latex:
     table = node.value[0]
     name = rf"\mathrm{{{plain(table.name)}}}"

@@ -131,7 +131,7 @@ def text(node: Node) -> str:
     """An expression for messages and comments, cut where it is long."""
     def leaf(n: Node) -> str | None:
         if n.op == "symbol":
-            return n.value[1]
+            return str(n.value[1])
         if n.op in ("constant", "truth"):
             return number_text(n.value) if n.op == "constant" else str(n.value)
         if n.op == "element":

@@ -12,7 +12,8 @@ from typing import Any, NoReturn
 
 from ..base.errors import Error, at, users_line
 from . import expression as ex, functions as fn
-from .symbols import symbol
+from .delays import delayed
+from .symbols import symbol, time
 
 _binary = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
            ast.FloorDiv: operator.floordiv, ast.Mod: operator.mod, ast.Pow: operator.pow, ast.BitAnd: operator.and_,
@@ -20,7 +21,7 @@ _binary = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul,
 _compare = {ast.Lt: operator.lt, ast.LtE: operator.le, ast.Gt: operator.gt, ast.GtE: operator.ge, ast.Eq: operator.eq,
             ast.NotEq: operator.ne}
 functions = {name: function for name, function in fn.by_name.items() if name not in ("sincos", "sincospi")}
-functions.update(min=fn.minimum, max=fn.maximum, ln=fn.log)
+functions.update(min=fn.minimum, max=fn.maximum, ln=fn.log, delayed=delayed)
 
 
 def _shown(source: str) -> str:
@@ -174,6 +175,8 @@ class _SympyReader:
 
     def _read(self, e: Any) -> Any:
         sympy = self.sympy
+        if isinstance(e, sympy.core.function.AppliedUndef) and not all(a.is_Symbol for a in e.args):
+            return self._past(e)
         if isinstance(e, (sympy.Symbol, sympy.core.function.AppliedUndef)):
             return self._symbol(sympy_name(e))
         if isinstance(e, sympy.Derivative):
@@ -198,6 +201,13 @@ class _SympyReader:
             raise Error(f"{self.what}: `{e}` has no counterpart in myriad: rewrite it with its functions, as by "
                         "expression.rewrite(...)")
         return fn.by_name[name](*map(self.read, e.args))
+
+    def _past(self, e: Any) -> Any:
+        """The delayed value that x(t - tau) is."""
+        when = next((s for s in e.args[0].free_symbols if self.names.get(str(s)) is time), None)
+        if len(e.args) > 1 or when is None:
+            raise Error(f"{self.what}: `{e}` is no value of the past: write x(t - tau), with the time t")
+        return delayed(self._symbol(sympy_name(e)), self.read(self.sympy.expand(when - e.args[0])))
 
     def _symbol(self, name: str) -> Any:
         if name not in self.names:

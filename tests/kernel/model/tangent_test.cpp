@@ -133,6 +133,8 @@ TEST_CASE("exponents of a linear flow are the real parts of its eigenvalues, and
     myriad::solve<myriad::tsitouras_5>(tests::test_device(), e, o);
     CHECK((e.accessory(spiral_spectrum::time_summed) == 0.5 * (phases - transient)).all());  // exact in binary
     const Eigen::ArrayXXd found = myriad::exponents(e);
+    for (int i = 0; i < spiral_spectrum::n_vectors; ++i)
+        CHECK((e.accessory(spiral_spectrum::exponent(i)) == found.col(i)).all());
     const ArrayXd growth = e.parameter(spiral::growth);
     // By then the tangents of an instance are in their planes to e^(-0.5 * 50), and rotate there, with lengths that
     // vary by a factor of less than 4 (the coupling tilts the plane): over a time of 500 that makes ln 4 / 500.

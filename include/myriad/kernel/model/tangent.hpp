@@ -11,8 +11,8 @@ namespace myriad {
 /// a model, in which `with_tangents<Model>::tangent(c, i)` is component c of tangent i among the states. The tangents
 /// start orthonormal (`initial_tangents(ensemble)` sets them) and are orthonormalised at the end of every phase by a QR
 /// decomposition. The logarithms of the diagonal of R are summed from phase `transient_phases` on: divided by
-/// `time_summed`, the sums are the Lyapunov exponents, the largest first (`exponents(ensemble)`); Benettin et al.,
-/// Meccanica 15 (1980) 9 and 21. The first components, parameters, shared values, accessories, events and hooks are
+/// `time_summed`, the sums are the Lyapunov exponents (`exponent(i)`), the largest first; Benettin et al., Meccanica 15
+/// (1980) 9 and 21. The first components, parameters, shared values, accessories, events and hooks are
 /// those of Model; actions transform the tangents like the distance to a neighbouring solution.
 ///
 /// Model's functions, hooks included, are called with dual numbers: their variables must be `auto` or R, the functions
@@ -34,7 +34,9 @@ struct with_tangents : detail::with_variations<Model, detail::state_directions<v
     /// The time summed, among the accessories.
     static constexpr int time_summed = detail::n_accessory<Model> + vectors;
     static constexpr int phase_began = time_summed + 1;  ///< the time at which the current phase began
-    static constexpr int n_accessory = phase_began + 1;  ///< number of all accessories
+    /// The Lyapunov exponent so far, among the accessories: NaN before the first phase that counts.
+    MYRIAD_FUNCTION static int exponent(int i = 0) { return phase_began + 1 + i; }
+    static constexpr int n_accessory = phase_began + 1 + vectors;  ///< number of all accessories
 
     /// Number of phases, from the ensemble's start, left out of the sums, among the shared integers.
     static constexpr int transient_phases = detail::n_shared_integer<Model>;
@@ -52,6 +54,7 @@ struct with_tangents : detail::with_variations<Model, detail::state_directions<v
         if (wrapped.phase == 0) {
             for (int i = 0; i < vectors; ++i) wrapped.accessory[growth(i)] = 0;
             wrapped.accessory[time_summed] = 0;
+            set_exponents(wrapped);
             detail::orthonormalise<n_original, vectors>(wrapped.y, n_original, [](int, const auto&) MYRIAD_LAMBDA {});
         }
     }
@@ -65,6 +68,13 @@ struct with_tangents : detail::with_variations<Model, detail::state_directions<v
                                                         if (counts) wrapped.accessory[growth(i)] += log(length);
                                                     });
         if (counts) wrapped.accessory[time_summed] += wrapped.t - wrapped.accessory[phase_began];
+        set_exponents(wrapped);
+    }
+
+private:
+    MYRIAD_FUNCTION static void set_exponents(auto& wrapped) {
+        for (int i = 0; i < vectors; ++i)
+            wrapped.accessory[exponent(i)] = wrapped.accessory[growth(i)] / wrapped.accessory[time_summed];
     }
 };
 

@@ -100,7 +100,7 @@ class Events:
         elif trigger.delay is None:  # the condition cannot cease to hold before
             trigger.persistent = True
         changing = by_others if trigger.delay is None else written | {
-            s for s in one.reads if s.value[0] in ("state", "built-in")}
+            s for s in one.reads if s.value[0] in ("state", "built-in", "delayed")}
         for value in one.given.values():
             if one.from_trigger and changing & {*symbols_of([value])} and value not in kept:
                 kept[value] = waiting_value(len(kept))

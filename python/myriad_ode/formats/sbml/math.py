@@ -87,12 +87,14 @@ class Functions:
 
 
 class Translator:
-    """Translates formulas. `lookup` gives the expression of an id, `rate_of` that of its time derivative; `where` says
-    in messages which element of the file a formula belongs to."""
+    """Translates formulas. `lookup` gives the expression of an id, `rate_of` that of its time derivative, and `past`
+    that of an expression some time ago; `where` says in messages which element of the file a formula belongs to."""
 
     def __init__(self, functions: Functions, lookup: Callable[[str, str], Any], rate_of: Callable[[str, str], Any],
                  time: Any) -> None:
         self.functions, self.lookup, self.rate_of, self.time = functions, lookup, rate_of, time
+        self.is_past = False  # whether a formula is translated for times that may be before the start
+        self.past: Callable[[Any, Any, str], Any] = lambda value, lag, where: value
         self.rate_of_expression: Callable[[Any, str], Any] = lambda expression, where: constant(0.0)
         self.factorials: Table | None = None
         self._calls: dict[Any, tuple[Any, Any]] = {}  # values by function and arguments, which may be called often
@@ -128,10 +130,20 @@ class Translator:
             if name is None:
                 raise Refused(f"rateOf of something else than an id, in {where}")
             return self.rate_of_expression(bound[name], where) if name in bound else self.rate_of(name, where)
-        if kind == "FUNCTION_DELAY":
-            raise Refused(f"a delay, in {where}")
+        if kind == "FUNCTION_DELAY" and len(children) == 2:
+            return self._past(children[0], children[1], where, bound)
         arguments = [self._node(child, where, bound) for child in children]
         return self._operation(kind, node, arguments, where)
+
+    def _past(self, value: Any, lag: Any, where: str, bound: Mapping[str, Any]) -> Any:
+        """The value of a formula some time ago."""
+        by = number(self._node(lag, where, bound))
+        outer, self.is_past = self.is_past, True
+        calls, self._calls = self._calls, {}
+        try:
+            return self.past(number(self._node(value, where, bound)), by, where)
+        finally:
+            self.is_past, self._calls = outer, calls
 
     def _operation(self, kind: str, node: Any, arguments: list[Any], where: str) -> Any:
         if kind == "PLUS":

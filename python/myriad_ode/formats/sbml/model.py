@@ -11,7 +11,8 @@ from ...base.errors import Error, users_line
 from ...codegen.model import Model
 from ...models.components import Components, name_of, unknown
 from ...symbolic import symbols as sym
-from ...symbolic.node import Node, symbols_of
+from ...symbolic.delays import pasts_of, read_now_or_then
+from ...symbolic.node import Node
 from ...symbolic.folding import constant, is_constant, value_of
 from ..deep_stack import deeply
 from .document import library, read
@@ -44,8 +45,9 @@ def read_sbml(source: Path | str, *, parameters: Names | None = None, reduce: bo
     free or bound. Their conserved sums are parameters, `conserved_E`, which follow from the initial values; the species
     are outputs.
 
-    Raises `my.Error` with element, id and line for what is not supported: algebraic rules, fast reactions, `delay`,
-    triggers other than those of docs/sbml.md, packages that change a model's meaning, and for what is not valid.
+    Raises `my.Error` with element, id and line for what is not supported: algebraic rules, fast reactions, delays in
+    rates and events that are delayed values themselves, triggers other than those of docs/sbml.md, packages that change
+    a model's meaning, and for what is not valid.
     """
     document, model = read(source)
     swept = None
@@ -108,7 +110,8 @@ class SbmlModel(Model):
                 reduction.rewrite(one)
         actions = [e for one in triggers for e in (one.condition, one.delay, one.priority, *one.values,
                                                    *one.do.values()) if e is not None]
-        needed = set(symbols_of([*equations.values(), *defaults.values(), *actions]))
+        needed = read_now_or_then([*equations.values(), *defaults.values(), *actions,
+                                    *(e for e in outputs.values() if pasts_of([e]))])
         constants: dict[Any, float] = {}
         declared = []
         for quantity in semantics.quantities.values():
@@ -125,7 +128,7 @@ class SbmlModel(Model):
         name = _suffixed(semantics.names.values(), semantics.component_name(name))
         self._reserved = {*semantics.names.values(), *semantics.quantities, *semantics.reactions}
         super().__init__(equations, (), None, None, None, None, None, None, declared, (), name, triggers=triggers,
-                         tie_seed=happening.tie_seed)
+                         tie_seed=happening.tie_seed, history=_history(semantics, [*equations.values(), *actions]))
         self.line, self.hidden = users_line(), frozenset([*self.accessories, *self.integer_accessories])
         self.constants = constants
         self.conserved = {} if reduction is None else reduction.sums
@@ -134,6 +137,9 @@ class SbmlModel(Model):
         for state in self.states:
             if state not in semantics.names.values():
                 self.defaults[state] = constant(0.0)
+        self.past_outputs = {n: outputs.pop(n) for n in [*outputs] if pasts_of([outputs[n]])}
+        before = _history(semantics, list(self.past_outputs.values()), in_outputs=True)
+        self.history_of_outputs = {state.value[1]: value for state, value in before.items()}
         self.outputs: dict[str, Any] = {n: e for n, e in outputs.items() if not (
             e.op == "symbol" and e.value[0] in ("state", "parameter") and e.value[1] == n and e not in constants)}
         units = Units(semantics.libsbml, semantics.model)
@@ -149,6 +155,16 @@ class SbmlModel(Model):
         if missing:
             raise Error(f"the file has no value of {', '.join(map(repr, missing))}: give one")
         return {n: float(v) for n, v in values.items()}
+
+
+def _history(semantics: Semantics, roots: list[Any], in_outputs: bool = False) -> dict[Any, Any]:
+    """What delayed states were before the start, where that is not the initial value."""
+    pasts = [past.value[1] for past in pasts_of(roots)]
+    if not in_outputs and (nested := next((past for past in pasts if pasts_of([past.lag])), None)) is not None:
+        raise Refused(f"`{nested}`, a delay that is a delayed value itself, in rates or events: there is that in rules "
+                      "alone")
+    states = dict.fromkeys(past.state for past in pasts)
+    return {state: before for state in states if (before := semantics.before(state)) is not None}
 
 
 def _units(semantics: Semantics, units: Units) -> dict[str, str]:

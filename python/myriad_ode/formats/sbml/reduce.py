@@ -10,6 +10,7 @@ from typing import Any
 
 from ...models.trigger import Trigger
 from ...symbolic import symbols as sym
+from ...symbolic.delays import delayed, pasts_of
 from ...symbolic.folding import add, constant, divide, folded, is_constant, multiply, number, subtract, value_of
 from ...symbolic.rewrite import rebuilt
 from .semantics import Quantity, Semantics
@@ -105,4 +106,8 @@ class Reduction:
         one.delay, one.priority = (None if e is None else self._written([e])[0] for e in (one.delay, one.priority))
 
     def _written(self, expressions: Iterable[Any]) -> list[Any]:
-        return rebuilt(list(expressions), folded, self.values)
+        expressions, known = list(expressions), dict(self.values)
+        for symbol in pasts_of(expressions):
+            past = symbol.value[1]
+            known[symbol] = delayed(*rebuilt([past.state, past.lag], folded, self.values))
+        return rebuilt(expressions, folded, known)

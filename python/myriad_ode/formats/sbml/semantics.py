@@ -11,10 +11,16 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
+from ...base.errors import Error
+from ...models import delays
 from ...models.trigger import own_names
 from ...symbolic import symbols as sym
+from ...symbolic.delays import delayed, pasts_of
 from ...symbolic.derivatives import derivatives
-from ...symbolic.folding import add, constant, divide, is_constant, multiply, number, subtract, total, value_of
+from ...symbolic.folding import (add, choose, compare, constant, divide, folded, is_constant, multiply, number,
+                                 subtract, total, value_of)
+from ...symbolic.node import symbols_of
+from ...symbolic.rewrite import rebuilt
 from .document import named
 from .math import Functions, Refused, Translator
 
@@ -55,6 +61,7 @@ class Semantics:
         self.functions = Functions(libsbml)
         self.translate = Translator(self.functions, self.meaning, self.rate_of, sym.time)
         self.translate.rate_of_expression = self.total_derivative
+        self.translate.past = self.past
         self.quantities: dict[str, Quantity] = {}
         self.reactions: dict[str, Any] = {}
         self.local_names: list[str] = []  # of parameters of kinetic laws
@@ -169,6 +176,11 @@ class Semantics:
                 if assignment.isSetMath() and not self.quantities[name].changes:
                     self.quantities[name].changes = "events"
 
+    @functools.cached_property
+    def has_delays(self) -> bool:
+        """Whether a formula of the file has a delay."""
+        return "symbols/delay" in self.libsbml.writeSBMLToString(self.model.getSBMLDocument())
+
     # -- What is stored ------------------------------------------------------------------------------------------------
 
     def component_name(self, wanted: str, of: str = "") -> str:
@@ -176,7 +188,7 @@ class Semantics:
         the file, except the id `of` what is named."""
         name = re.sub("_+", "_", re.sub("[^A-Za-z0-9_]", "_", wanted)).strip("_") or "unnamed"
         name = name if name[0].isalpha() else f"x_{name}"
-        if self.model.getNumEvents() and own_names.fullmatch(name):
+        if self.model.getNumEvents() and own_names.fullmatch(name) or name in delays.own_names and self.has_delays:
             name = f"{name}_x"
         return sym.free_name(name, {*self.names.values(), *({*self.quantities, *self.reactions} - {of})})
 
@@ -249,7 +261,9 @@ class Semantics:
     # -- What ids mean -------------------------------------------------------------------------------------------------
 
     def _once(self, key: Any, make: Any, where: str) -> Any:
-        """What `make` gives, computed once; refuses what depends on itself."""
+        """What `make` gives, computed once, and once for times that may be before the start; refuses what depends on
+        itself."""
+        key = (*key, self.translate.is_past and key[0] != "stored")
         if key not in self._known:
             if key in self._under_way:
                 raise Refused(f"{where} depends on itself")
@@ -375,8 +389,17 @@ class Semantics:
         """The derivative by time of what an id stands for."""
         quantity = self.quantities.get(name)
         if quantity is not None and quantity.changes != "assignment" and not quantity.in_amount:
-            return self.slope(quantity) if quantity.changes else constant(0.0)
-        return self._once(("rate of", name), lambda: self.total_derivative(self.meaning(name, where), where), where)
+            return self._now(self.slope(quantity), where) if quantity.changes else constant(0.0)
+        return self._now(self._once(("rate of", name), lambda: self.total_derivative(self.meaning(name, where), where),
+                                    where), where)
+
+    def _now(self, rate: Any, where: str) -> Any:
+        """A rate, which is zero before the start, where nothing changes."""
+        if not self.translate.is_past or is_constant(rate) and value_of(rate) == 0:
+            return rate
+        if any(s.value[0] == "state" and self.before(s) is not None for s in symbols_of([rate])):
+            raise Refused(f"the rate, before the start, of what an initial assignment lets depend on time, in {where}")
+        return choose(compare("less", sym.time, constant(0.0)), constant(0.0), rate)
 
     def total_derivative(self, expression: Any, where: str) -> Any:
         """The derivative by time of an expression along the solution."""
@@ -384,9 +407,53 @@ class Semantics:
         found = derivatives([expression], [sym.time, *(q.symbol for q in states)])
         if found is None:
             raise Refused(f"the rate of something that has no derivative, in {where}")
+        if pasts_of([expression]):
+            raise Refused(f"the rate of a delayed value, in {where}")
         rate = constant(0.0)
         for i, partial in found[0].items():
             slope = constant(1.0) if i == 0 else self.slope(states[i - 1])
             if not (is_constant(slope) and value_of(slope) == 0):
                 rate = add(rate, multiply(number(partial), slope))
         return rate
+
+    # -- The past ------------------------------------------------------------------------------------------------------
+
+    def past(self, value: Any, lag: Any, where: str) -> Any:
+        """The value of an expression some time ago. Before the start, constants are what their initial assignments make
+        of that time."""
+        if is_constant(lag) and value_of(lag) == 0 or is_constant(value):
+            return value
+        if is_constant(lag) and not 0 < value_of(lag) < math.inf:
+            raise Refused(f"a delay of {value_of(lag):g}, in {where}: it is a time, of zero or more")
+        try:
+            made = delayed(value, lag)
+        except Error as error:
+            raise Refused(f"a delay, in {where}: {error}") from None
+        then = subtract(sym.time, lag)
+        is_early = compare("less", then, constant(0.0))
+        known: dict[Any, Any] = {}
+        for symbol in symbols_of([value]):
+            if symbol.value[0] == "parameter" and (before := self.before(symbol)) is not None:
+                known[symbol] = choose(is_early, rebuilt([before], folded, {sym.time: then})[0], symbol)
+        return rebuilt([made], folded, known)[0]
+
+    def before(self, symbol: Any) -> Any:
+        """What a state or constant was before the start, as an expression of time and constants: what its initial
+        assignment makes of the time; None where it is the initial value."""
+        where = f"the initial value of {symbol.value[1]}"
+        return self._once(("before", symbol.value), lambda: self._before(symbol), where)
+
+    def _before(self, symbol: Any) -> Any:
+        quantity = next((q for q in self.quantities.values() if q.symbol is symbol), None)
+        start = None if quantity is None else self._start(quantity)
+        start = start() if callable(start) else start
+        if start is None:
+            return None
+        states = {s for s in symbols_of([start]) if s.value[0] == "state"}
+        inner = {s: found for s in states if (found := self.before(s)) is not None}
+        if not inner and not any(s is sym.time for s in symbols_of([start])):
+            return None
+        if any(s not in inner for s in states):
+            raise Refused(f"{quantity.where if quantity else symbol.value[1]} is read with a delay, and what it was "
+                          "before the start depends on a state")
+        return rebuilt([start], folded, inner)[0]

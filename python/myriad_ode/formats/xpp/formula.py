@@ -7,7 +7,9 @@ import re
 from collections.abc import Callable, Mapping
 from typing import Any, NoReturn
 
+from ...base.errors import Error
 from ...symbolic import expression as ex, functions as fn
+from ...symbolic.delays import delayed
 from ...symbolic.folding import (add, apply, both, choose, compare, constant, divide, either, is_constant, make_folded,
                                  multiply, number, opposite, power, subtract, total, truth, value_of)
 
@@ -46,7 +48,7 @@ _functions: dict[str, tuple[int, Callable[..., Any]]] = {
     "heav": (1, lambda x: choose(compare("less", x, constant(0.0)), constant(0.0), constant(1.0))),
 }
 words = frozenset([*_functions, "if", "then", "else", "sum", "of", "pi", "t", "shift"])  #: that no quantity can be
-_beyond = {"delay": "delays", "del_shft": "delays", "int": "integrals over the past", "ran": "random numbers",
+_beyond = {"int": "integrals over the past", "ran": "random numbers",
            "normal": "random numbers", "poisson": "random numbers", "hom_bcs": "boundary conditions"}
 
 
@@ -187,6 +189,12 @@ class _Reader:
             raise NoFormula(f"`{name}`: {_beyond[name]} are not supported")
         if name == "shift":
             return self.shift()
+        if name == "delay":
+            given = self.arguments()
+            self.check(name, given, 2)
+            return self.past(*given)
+        if name == "del_shft":
+            return self.past(*self.shift(and_delayed=True))
         if name in self.names.tables:
             return self.names.tables[name](self.within())
         if name in self.names.functions:
@@ -218,12 +226,26 @@ class _Reader:
             raise NoFormula(f"{what} is no whole number that is known beforehand")
         return int(value_of(value))
 
-    def shift(self) -> Any:
-        """shift(x, n): the n-th state or quantity after x."""
+    @staticmethod
+    def past(value: Any, lag: Any) -> Any:
+        """delay(x, tau); where the lag is zero, x itself."""
+        if is_constant(value) or is_constant(lag) and value_of(lag) == 0:
+            return value
+        try:
+            return delayed(value, lag)
+        except Error as why:
+            raise NoFormula(str(why)) from None
+
+    def shift(self, and_delayed: bool = False) -> Any:
+        """shift(x, n): the n-th state or quantity after x. That and the lag in del_shft(x, n, tau)."""
         self.expect("(")
         name = self.take()
         self.expect(",")
         by = self.whole_number(self.expression(0), "the second argument of `shift`")
+        lag = None
+        if and_delayed:
+            self.expect(",")
+            lag = number(self.expression(0))
         self.expect(")")
         series = next((one for one in self.names.series if name in one), None)
         if series is None:
@@ -231,7 +253,8 @@ class _Reader:
         place = series.index(name) + by
         if not 0 <= place < len(series):
             raise NoFormula(f"nothing is {by} after `{name}`")
-        return self.names.find(series[place])
+        found = self.names.find(series[place])
+        return (found, lag) if and_delayed else found
 
     def sum(self) -> Any:
         """sum(low, high) of (expression of i')."""

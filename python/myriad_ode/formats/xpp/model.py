@@ -13,8 +13,10 @@ import numpy as np
 
 from ...base.errors import Error, users_line
 from ...codegen.model import Model
+from ...models.delays import own_names
 from ...models.event import Event, event
 from ...symbolic import expression as ex, symbols as sym
+from ...symbolic.delays import pasts_of
 from ...symbolic.derivatives import derivatives
 from ...symbolic.evaluate import evaluate
 from ...symbolic.node import symbols_of
@@ -23,7 +25,7 @@ from ...symbolic.interpolate import interpolate
 from ...symbolic.rewrite import rebuilt
 from ..deep_stack import deeply
 from .formula import Names, NoFormula, formula
-from .ode_file import Global, Line, OdeFile, in_ascii, is_number
+from .ode_file import Global, Line, OdeFile, Parts, in_ascii, is_number
 
 if TYPE_CHECKING:
     from ...symbolic.types import Path
@@ -41,7 +43,9 @@ def read_xpp(source: Path | str, *, name: str | None = None) -> XppModel:
     `model.time` are the ends of the time domain, `model.settings` all that stands behind `@`, and `model.sets` the
     values of `set` by name.
 
-    Raises `my.Error` with the line for what is not supported: maps, delays, integrals over the past, random
+    `delay(x, tau)` is `my.delayed`; before the begin x is what `x(0)=` says, also as a function of t, else zero.
+
+    Raises `my.Error` with the line for what is not supported: maps, integrals over the past, random
     numbers and Markov processes, algebraic equations, boundary conditions, networks of `special`.
     """
     text, folder, called = _text_of(source)
@@ -81,7 +85,7 @@ class XppModel(Model):
 
     def __init__(self, file: OdeFile, name: str) -> None:
         parts = file.parts
-        self._taken: dict[str, str] = {}
+        self._taken: dict[str, str] = dict.fromkeys(own_names, "") if file.has_delays else {}
         self._ids = {*parts.equations, *parts.parameters, *parts.derived, *parts.quantities, *parts.outputs,
                      *parts.processes}
         states = {n: sym.symbol("state", self._component(n, n)) for n in parts.equations}
@@ -106,10 +110,13 @@ class XppModel(Model):
         if noise and parts.events:
             parts.events[0].line.refuse("a model with noise has no events yet: its paths are too rough to locate them")
         events = [self._event(one, number, names, states, parameters) for number, one in enumerate(parts.events, 1)]
+        before = self._history(parts, states, names) if file.has_delays else {}
+        read = {past.value[1].state for past in pasts_of([*equations.values(), *(
+            e for one in events for e in (one.function, *one.do.values()))])}
         name = self._component(re.sub("_+", "_", re.sub(r"\W", "_", in_ascii(name.lower()))).strip("_") or "model")
         self._reserved = {*self._taken, *self._ids}
         super().__init__(equations, events, None, None, None, None, None, None, list(parameters.values()), (), name,
-                         noise=noise)
+                         noise=noise, history={s: b for s, b in before.items() if s in read})
         self.line, self.hidden = users_line(), frozenset(self.accessories)
         self.defaults: dict[str, Any] = {**self.shared_values}
         for n, symbol in states.items():
@@ -117,26 +124,33 @@ class XppModel(Model):
             if n in parts.initial:
                 line, text = parts.initial.pop(n)
                 value = self.defaults[symbol.value[1]] = _in_line(line, text, names)
-                if any(s.value[0] in ("state", "noise") for s in symbols_of([value])):
+                if any(s.value[0] in ("state", "noise", "delayed") for s in symbols_of([value])):
                     line.refuse("an initial value depends on a state or on noise")
         for line, _ in parts.initial.values():
             line.refuse("it gives an initial value to what has no equation")
         for n, symbol in parameters.items():
             self.defaults[symbol.value[1]] = constant(parts.parameters[n])
-        self.outputs = {n: names.values[n] for n in (*parts.derived, *parts.quantities)}
-        self.outputs |= {n: _in_line(line, text, names) for n, (line, text) in parts.outputs.items()
-                         if n not in states and n not in parameters}
-        self.outputs = {n: value for n, value in self.outputs.items() if not self._is_noisy([value])}
         components = {n: symbol.value[1] for n, symbol in (*states.items(), *parameters.items())}
         self.aliases = {alias: component for n, component in components.items()
                         for alias in (n, file.spelled.get(n, n)) if alias != component}
-        for n in [*self.outputs]:
-            if file.spelled.get(n, n) not in (n, *self.aliases, *components):
-                self.outputs[file.spelled[n]] = self.outputs[n]
+        self._set_outputs(file, names, components)
+        self.history_of_outputs = {state.value[1]: value for state, value in before.items()}
         self.settings, begin = file.settings, file.settings.get("t0", 0.0)
         self.time = (begin, begin + file.settings.get("total", 20.0))
         self.sets = {given: {components[n]: v for n, v in values.items() if n in components}
                      for given, values in file.sets.items()}
+
+    def _set_outputs(self, file: OdeFile, names: Names, components: dict[str, str]) -> None:
+        """What a run has besides components, those that read the past apart, and also as the file spells them."""
+        parts = file.parts
+        found = {n: names.values[n] for n in (*parts.derived, *parts.quantities)}
+        found |= {n: _in_line(line, text, names) for n, (line, text) in parts.outputs.items() if n not in components}
+        found = {n: value for n, value in found.items() if not self._is_noisy([value])}
+        for n in [*found]:
+            if file.spelled.get(n, n) not in (n, *self.aliases, *components):
+                found[file.spelled[n]] = found[n]
+        self.outputs = {n: value for n, value in found.items() if not pasts_of([value])}
+        self.past_outputs = {n: value for n, value in found.items() if n not in self.outputs}
 
     def _component(self, wanted: str, of: str = "") -> str:
         """A name like the wanted one that a component of a model can have. Nothing in the file has it, except what is
@@ -150,6 +164,16 @@ class XppModel(Model):
     def _is_noisy(self, expressions: list[Any]) -> bool:
         """Whether expressions depend on Wiener processes."""
         return not {*self._processes}.isdisjoint(symbols_of(expressions))
+
+    @staticmethod
+    def _history(parts: Parts, states: dict[str, Any], names: Names) -> dict[Any, Any]:
+        """What states were before the begin: what x(0)= says, also as a function of t, else zero, as in XPPAUT."""
+        found = {}
+        for n, symbol in states.items():
+            found[symbol] = _in_line(*parts.history[n], names) if n in parts.history else constant(0.0)
+            if any(s.value[0] in ("state", "noise", "delayed") for s in symbols_of([found[symbol]])):
+                parts.history[n][0].refuse("what was before the begin depends on a state or on noise")
+        return found
 
     def _slope(self, line: Line, text: str, names: Names, noise: dict[Any, Any]) -> Any:
         """The right-hand side of an equation without its noise, and the factors of that, which go to `noise`."""

@@ -39,6 +39,7 @@ class Parts:
     parameters: dict[str, float] = field(default_factory=dict)
     numbers: dict[str, float] = field(default_factory=dict)
     initial: dict[str, tuple[Line, str]] = field(default_factory=dict)
+    history: dict[str, tuple[Line, str]] = field(default_factory=dict)
     derived: dict[str, tuple[Line, str]] = field(default_factory=dict)
     quantities: dict[str, tuple[Line, str]] = field(default_factory=dict)
     outputs: dict[str, tuple[Line, str]] = field(default_factory=dict)
@@ -115,6 +116,7 @@ class OdeFile:
         self.sets: dict[str, dict[str, float]] = {}
         self.parts = Parts()
         text, self.spelled = _names_in_ascii(text)  # names as the file has them
+        self.has_delays = re.search(r"\b(delay|del_shft)\s*\(", text.lower()) is not None
         for line in self._lines(text):
             self._read(line)
         if not self.parts.equations:
@@ -238,7 +240,7 @@ class OdeFile:
 
     def _of_arguments(self, line: Line, name: str, arguments: str, value: str) -> None:
         if arguments.strip() == "0":
-            self.parts.initial[name] = (line, value)
+            self.parts.initial[name] = self.parts.history[name] = (line, value)
         else:
             wanted = [a.strip() for a in arguments.split(",")]
             if not all(re.fullmatch(r"[a-z]\w*", a) for a in wanted):
