@@ -14,9 +14,12 @@ namespace myriad::host::inline MYRIAD_ABI {
 
 namespace {
 
-/// Steps of the past that a call keeps of each instance: as many as asked for, up to a power of two.
+/// Steps of the past that a call keeps of each instance: as many as asked for, up to a power of two. Of fewer than
+/// eight the step that is written and its ends would leave none to see.
 std::int32_t history_slots(const options& o, const call_facts& facts) {
-    const std::int64_t wanted = o.history_steps > 0 ? o.history_steps : facts.adaptive() ? 256 : 1024;
+    const std::int64_t wanted = o.history_steps > 0 ? std::max<std::int64_t>(o.history_steps, 8)
+                                : facts.adaptive()  ? 256
+                                                    : 1024;
     return static_cast<std::int32_t>(std::bit_ceil(static_cast<std::uint64_t>(wanted)));
 }
 

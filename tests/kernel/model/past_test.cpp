@@ -309,6 +309,13 @@ TEST_CASE("delays that cannot be integrated have a status of their own") {
         CHECK(e.status(1) == status::history_overflow);
         CHECK(e.t()[1] < 1.5);
     }
+    SECTION("of which hardly anything is kept") {
+        auto e = decaying(1, 4);
+        options o = step(0.01);
+        o.history_steps = 1;
+        solve<myriad::runge_kutta_4>(tests::test_device(), e, o);
+        CHECK(e.status(0) == status::history_overflow);
+    }
     SECTION("negative, zero, not a number") {
         auto e = decaying(4, 4);
         e.parameter(decay::tau)[0] = -0.5;

@@ -11,7 +11,7 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// Its state, and the time at which it begins.
+/// The state of instance i, and the time at which it begins.
 template <class Model, class R>
 vec<R, n_state<Model>> state_of(const argument_head<R>& a, std::int64_t i) {
     vec<R, n_state<Model>> y;
@@ -27,7 +27,7 @@ R begin_of(const argument_head<R>& a, std::int64_t i) {
 template <class Model, class R>
 void put_constant_past(inputs<Model, R>& p, const argument_head<R>& a, std::int64_t i) {
     if constexpr (has_delays<Model>) {
-        constexpr int slots = 2, steps = slots * history_fields(n_kept<Model>, 0);
+        constexpr int slots = 8, steps = slots * history_fields(n_kept<Model>, 0);
         thread_local R ring[steps + n_kept<Model>] = {};  // the inputs are used at once
         detail::for_each_kept_state<Model>([&](auto at, int state) { ring[steps + at] = a.state[state * a.size + i]; });
         p.past = {};  // without steps

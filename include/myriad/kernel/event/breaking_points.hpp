@@ -65,8 +65,9 @@ struct breaking_points {
             s.breaks.listed[i] = 0;
             s.data.past.start_of(i, 0) = t;
             R* const initial = s.data.past.initial_of(i);
-            for_each_kept([&](auto at, int state)
-                              MYRIAD_LAMBDA { initial[at * s.data.past.stride] = get_lane(s.data.y[state], i); });
+            detail::for_each_kept_state<Model>([&](auto at, int state) MYRIAD_LAMBDA {
+                initial[at * s.data.past.stride] = get_lane(s.data.y[state], i);
+            });
             mark(i, has_history<Model> ? 0 : 1);
         } else {
             if (moved != R(0)) move_past(i, moved);
@@ -261,7 +262,7 @@ private:
     MYRIAD_FUNCTION void put_state(int i) const {
         past_view<Model, S>& all = s.data.past;
         R* const step = all.step_of(i, past(i).steps - (all.terms == 2 ? 0 : 1));
-        for_each_kept([&](auto place, int state) MYRIAD_LAMBDA {
+        detail::for_each_kept_state<Model>([&](auto place, int state) MYRIAD_LAMBDA {
             R* const to = all.terms_of(step, place);
             to[0] = get_lane(s.data.y[state], i);
             for (int power = 1; power < all.terms; ++power) to[power * all.stride] = R(0);
@@ -301,11 +302,6 @@ private:
         }
     }
 
-    /// Calls `visit(place among those kept, number of the state)` for each state whose past is kept.
-    template <class Visit>
-    MYRIAD_FUNCTION void for_each_kept(const Visit& visit) const {
-        detail::for_each_kept_state<Model>(visit);
-    }
     MYRIAD_FUNCTION void move_past(int i, R by) const {
         past(i).moved += by;
         s.data.past.moved_of(i) = past(i).moved;
@@ -318,7 +314,7 @@ private:
         const bool by_slopes = all.terms == 2;
         R* const step = all.step_of(i, past(i).steps - (by_slopes ? 0 : 1));
         bool differs = false;
-        for_each_kept([&](auto place, int state) MYRIAD_LAMBDA {
+        detail::for_each_kept_state<Model>([&](auto place, int state) MYRIAD_LAMBDA {
             R end = R(0), size = R(0);
             for (int power = 0; power < (by_slopes ? 1 : all.terms); ++power) {
                 const R term = all.terms_of(step, place)[power * all.stride];

@@ -22,18 +22,10 @@ inline constexpr bool samples_trajectory = requires {
     Method::samples;
 };
 
+/// Whether a method has an interpolant of its own; for others it is the cubic Hermite polynomial.
 template <class Method>
 inline constexpr bool has_own_interpolant = requires {
     Method::interpolant_degree;
 };
-/// Degree of a method's interpolant in the part of the step; without one of its own it is the cubic Hermite polynomial.
-template <class Method>
-inline constexpr int interpolant_degree = [] {
-    if constexpr (has_own_interpolant<Method>) {
-        return Method::interpolant_degree;
-    } else {
-        return 3;
-    }
-}();
 
 }  // namespace myriad::detail

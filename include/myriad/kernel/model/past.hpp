@@ -27,10 +27,8 @@ struct past_trouble {
 /// The step that a delayed value saw last, so that the next lookup in it reads little or nothing of the ring.
 template <class R>
 struct seen_step {
-    static constexpr std::int32_t none = -2;
-
     std::int32_t number;         // -1: what was before the beginning
-    R start, end, per_length;    // times of it; of `none` and the beginning no time lies in between
+    R start, end, per_length;    // its times; none lies between them before the beginning, and once it is forgotten
     R linear, quadratic, cubic;  // and the value at the start: of the cubic polynomial
     R value;
 
@@ -71,7 +69,9 @@ struct past_view {
     using R = real_of<S>;
     static constexpr int lanes = lanes_of<S>;
 
-    R* ring;  // field f of slot s of instance i is at ring[(s * fields + f) * stride + i]; behind it initial states
+    // Field f of slot s of instance i is at ring[(s * fields + f) * stride + i]; behind the slots are the initial
+    // states and the time by which the past was moved.
+    R* ring;
     std::int64_t stride;
     std::int32_t slots, terms;  // slots: a power of two
     S reached;                  // the end of the last step

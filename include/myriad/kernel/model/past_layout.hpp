@@ -67,6 +67,12 @@ MYRIAD_FUNCTION std::int64_t history_numbers(std::int64_t slots, int kept, int t
 }
 /// How many numbers of each state a method's interpolant takes.
 template <class Method>
-inline constexpr int history_terms = has_own_interpolant<Method> ? interpolant_degree<Method> + 1 : 2;
+inline constexpr int history_terms = [] {
+    if constexpr (has_own_interpolant<Method>) {
+        return Method::interpolant_degree + 1;
+    } else {
+        return 2;
+    }
+}();
 
 }  // namespace myriad::detail

@@ -62,51 +62,49 @@ MYRIAD_FUNCTION S time_of_history(S time, const inputs<Model, S>& p) {
     return time;
 }
 
-/// Delayed value j at that time.
+/// Looks up delayed value j at that time: `inside(lane, step, time)` in the step that it sees; before the beginning
+/// `history(time)`, or `initial(lane)` of a state without one.
+template <class Model, int j, class S, class Inside, class Initial, class History>
+MYRIAD_FUNCTION S look_up(const S& time, const inputs<Model, S>& p, const Inside& inside, const Initial& initial,
+                          [[maybe_unused]] const History& history) {
+    S found = S(real_of<S>(0));
+    mask_of<S> before = mask_of<S>(false);
+    MYRIAD_UNROLL
+    for (int i = 0; i < lanes_of<S>; ++i) {
+        const auto at = get_lane(time, i);
+        const auto& seen = p.past.template look<j>(i, at);
+        set_lane(before, i, seen.number < 0);
+        set_lane(found, i, seen.number >= 0 ? inside(i, seen, at) : initial(i));
+    }
+    if constexpr (gives_history<Model, j>()) {
+        if (any(before)) found = select(before, history(detail::time_of_history<Model>(time, p)), found);
+    }
+    return found;
+}
+/// Delayed value j at that time, and its derivative by time.
 template <class Model, int j, class S>
 MYRIAD_FUNCTION S past_value(const S& time, const inputs<Model, S>& p) {
-    S value = S(real_of<S>(0));
-    mask_of<S> before = mask_of<S>(false);
-    MYRIAD_UNROLL
-    for (int i = 0; i < lanes_of<S>; ++i) {
-        const auto at = get_lane(time, i);
-        const auto& seen = p.past.template look<j>(i, at);
-        set_lane(before, i, seen.number < 0);
-        if (seen.number >= 0) {
-            set_lane(value, i, p.past.template value_in<j>(i, seen, at));
-        } else if constexpr (!gives_history<Model, j>()) {
-            set_lane(value, i, p.past.template initial_value<j>(i));
-        }
-    }
-    if constexpr (gives_history<Model, j>()) {
-        if (any(before)) {
-            const S then = detail::time_of_history<Model>(time, p);
-            value = select(before, S(Model::template history<S>(j, then, p)), value);
-        }
-    }
-    return value;
+    return detail::look_up<Model, j>(
+        time, p,
+        [&](int i, const auto& seen, auto at) MYRIAD_LAMBDA { return p.past.template value_in<j>(i, seen, at); },
+        [&](int i) MYRIAD_LAMBDA { return p.past.template initial_value<j>(i); },
+        [&](const S& then) MYRIAD_LAMBDA {
+            if constexpr (gives_history<Model, j>()) return S(Model::template history<S>(j, then, p));
+            return then;
+        });
 }
-
-/// Its derivative by time.
 template <class Model, int j, class S>
 MYRIAD_FUNCTION S past_slope(const S& time, const inputs<Model, S>& p) {
-    S slope = S(real_of<S>(0));
-    mask_of<S> before = mask_of<S>(false);
-    MYRIAD_UNROLL
-    for (int i = 0; i < lanes_of<S>; ++i) {
-        const auto at = get_lane(time, i);
-        const auto& seen = p.past.template look<j>(i, at);
-        set_lane(before, i, seen.number < 0);
-        if (seen.number >= 0) set_lane(slope, i, p.past.template slope_in<j>(i, seen, at));
-    }
-    if constexpr (gives_history<Model, j>()) {
-        if (any(before)) {
-            const dual<S> moving(detail::time_of_history<Model>(time, p), S(real_of<S>(1)));
-            const dual<S> value = Model::template history<dual<S>>(j, moving, p);
-            slope = select(before, static_cast<const S&>(value.derivative), slope);
-        }
-    }
-    return slope;
+    using R = real_of<S>;
+    return detail::look_up<Model, j>(
+        time, p,
+        [&](int i, const auto& seen, auto at) MYRIAD_LAMBDA { return p.past.template slope_in<j>(i, seen, at); },
+        [](int) MYRIAD_LAMBDA { return R(0); },
+        [&](const S& then) MYRIAD_LAMBDA {
+            if constexpr (gives_history<Model, j>())
+                return S(Model::template history<dual<S>>(j, dual<S>(then, S(R(1))), p).derivative);
+            return then;
+        });
 }
 
 /// Sets `p.delayed` for functions that are evaluated at (t, y).

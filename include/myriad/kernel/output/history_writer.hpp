@@ -10,10 +10,9 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 
 /// The coefficients of a method's own interpolant for one state, in powers of the part of the step from 0 to 1.
 template <class Method, class S, extent n>
-MYRIAD_FUNCTION vec<S, interpolant_degree<Method> + 1> interpolant_coefficients(const step_data<Method, S, n>& step,
-                                                                                int c) {
+MYRIAD_FUNCTION vec<S, history_terms<Method>> interpolant_coefficients(const step_data<Method, S, n>& step, int c) {
     using R = real_of<S>;
-    constexpr int degree = interpolant_degree<Method>;
+    constexpr int degree = Method::interpolant_degree;
     vec<S, degree + 1> of;
     of[0] = step.y[c];
     if constexpr (rosenbrock_method<Method>) {

@@ -75,7 +75,7 @@ struct sample_arguments {
 /// The past of instances whose model has delays (model/past.hpp).
 template <class R>
 struct history_arguments {
-    R* ring;               // the steps, and behind them the initial values of the states kept
+    R* ring;               // the steps, and what is behind them
     std::uint32_t* jumps;  // of each instance a ring of as many entries as there are slots
     std::int32_t* place;   // steps stored, and jumps listed
     std::int32_t slots;    // steps in a ring, a power of two
