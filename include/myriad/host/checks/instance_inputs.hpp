@@ -28,7 +28,7 @@ template <class Model, class R>
 void put_constant_past(inputs<Model, R>& p, const argument_head<R>& a, std::int64_t i) {
     if constexpr (has_delays<Model>) {
         constexpr int slots = 8, steps = slots * history_fields(n_kept<Model>, 0);
-        thread_local R ring[steps + n_kept<Model>] = {};  // the inputs are used at once
+        thread_local R ring[steps + n_kept<Model> + 1] = {};  // the inputs are used at once
         detail::for_each_kept_state<Model>([&](auto at, int state) { ring[steps + at] = a.state[state * a.size + i]; });
         p.past = {};  // without steps
         p.past.ring = ring;

@@ -61,7 +61,7 @@ struct breaking_points {
         if (is_first) {
             past(i).steps = 0;
             past(i).begins = true;
-            past(i).moved = s.data.past.moved_of(i) = R(0);
+            s.data.past.moved_of(i) = R(0);
             s.breaks.listed[i] = 0;
             s.data.past.start_of(i, 0) = t;
             R* const initial = s.data.past.initial_of(i);
@@ -303,8 +303,7 @@ private:
     }
 
     MYRIAD_FUNCTION void move_past(int i, R by) const {
-        past(i).moved += by;
-        s.data.past.moved_of(i) = past(i).moved;
+        s.data.past.moved_of(i) += by;
         const std::int32_t oldest = s.data.past.oldest(i);
         for (std::int32_t k = oldest > 0 ? oldest : 0; k <= past(i).steps; ++k) s.data.past.start_of(i, k) += by;
     }

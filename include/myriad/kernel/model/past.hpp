@@ -52,7 +52,6 @@ struct lane_past {
     bool has_trial;             // the one after them holds the trial that is iterated
     std::int32_t from[lags];    // of each delayed value: the first step it may see now; -1: what was before
     std::int32_t before[lags];  // and the first that it must not see yet, a jump; or none
-    R moved;                    // since the beginning, by phases whose time begins again
     mutable seen_step<R> seen[lags];
     mutable std::uint8_t trouble;
 
@@ -82,6 +81,7 @@ struct past_view {
         return ring + (k & (slots - 1)) * row + lane[i].instance;
     }
     MYRIAD_FUNCTION R* initial_of(int i) const { return ring + slots * row + lane[i].instance; }
+    /// How far the past was moved, by phases whose time begins again.
     MYRIAD_FUNCTION R& moved_of(int i) const { return initial_of(i)[n_kept<Model> * stride]; }
     /// The time at which step k begins; that of the step after the last is written, too.
     MYRIAD_FUNCTION R& start_of(int i, std::int32_t k) const { return *step_of(i, k); }
@@ -178,7 +178,6 @@ MYRIAD_FUNCTION void look_back(past_view<Model, S>& past, const Arguments& args,
     past.lane[i].steps = args.history.place[index];
     past.lane[i].begins = false;
     past.lane[i].resumes = true;
-    past.lane[i].moved = past.moved_of(i);
     past.lane[i].has_trial = false;
     past.lane[i].trouble = past_trouble::none;
     MYRIAD_UNROLL

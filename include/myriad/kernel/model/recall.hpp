@@ -58,7 +58,7 @@ MYRIAD_FUNCTION bool gives_history() {
 template <class Model, class S>
 MYRIAD_FUNCTION S time_of_history(S time, const inputs<Model, S>& p) {
     MYRIAD_UNROLL
-    for (int i = 0; i < lanes_of<S>; ++i) set_lane(time, i, get_lane(time, i) - p.past.lane[i].moved);
+    for (int i = 0; i < lanes_of<S>; ++i) set_lane(time, i, get_lane(time, i) - p.past.moved_of(i));
     return time;
 }
 
