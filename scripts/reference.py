@@ -52,6 +52,8 @@ PAGES = {
                 ["kernel/model/tangent.hpp", "host/ensemble/exponents.hpp"]),
     "sensitivity": ("Sensitivities", "`<myriad/sensitivity.hpp>`.",
                     ["kernel/model/sensitivity.hpp", "host/ensemble/sensitivities.hpp"]),
+    "adjoint": ("Adjoints", "`<myriad/adjoint.hpp>`, and `<myriad/instantiate_adjoint.hpp>` for the model's file.",
+                ["host/solve/adjoint.hpp"]),
     "coupled_units": ("Coupled units", "`<myriad/coupled_units.hpp>`.",
                       ["kernel/model/coupled_units.hpp", "kernel/model/coupling.hpp", "kernel/model/unit_views.hpp",
                        "host/ensemble/couplings.hpp"]),
@@ -77,7 +79,8 @@ OPAQUE_STUDIES = ("any_model", "chunk_record", "column", "computed_chunk", "file
                   "reduction_definition")
 PUBLIC_ELSEWHERE = ("myriad::cuda::kernel_facts",  # report::kernel
                     *(f"myriad::studies::{name}" for name in PUBLIC_STUDIES))
-MACROS = ("MYRIAD_FUNCTION", "MYRIAD_LAMBDA", "MYRIAD_INSTANTIATE", "MYRIAD_INSTANTIATE_FLOAT", "MYRIAD_VERSION",
+MACROS = ("MYRIAD_FUNCTION", "MYRIAD_LAMBDA", "MYRIAD_INSTANTIATE", "MYRIAD_INSTANTIATE_FLOAT",
+          "MYRIAD_INSTANTIATE_ADJOINT", "MYRIAD_VERSION",
           "MYRIAD_REGISTER_MODEL", "MYRIAD_REGISTER_MODEL_FLOAT",
           "MYRIAD_VERSION_MAJOR", "MYRIAD_VERSION_MINOR", "MYRIAD_VERSION_PATCH")
 CMAKE_FUNCTIONS = ("myriad_add_models",)

@@ -8,6 +8,7 @@
 struct bistable {  // dx = (x - x^3) dt + sigma dW
     enum state { x, n_state };
     enum parameter { sigma, n_parameter };
+    enum event { over, n_event };
 
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& y, const auto&) {
@@ -18,8 +19,8 @@ struct bistable {  // dx = (x - x^3) dt + sigma dW
         return myriad::vec<R, n_state>{p[sigma]};
     }
     template <class R>
-    MYRIAD_FUNCTION static myriad::mask_of<R> after_step(auto& lane) {
-        return lane.y[x] > myriad::real_of<R>(1);  // at the bottom of the other well: ends the phase
+    MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto, const myriad::vec<R, n_state>& y, const auto&) {
+        return myriad::vec<R, n_event>{y[x] - myriad::real_of<R>(1)};  // at the bottom of the other well
     }
 };
 // end of snippet

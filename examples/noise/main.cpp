@@ -37,14 +37,14 @@ int main() {
         paths.state(bistable::x) = -1;
         paths.parameter(bistable::sigma) = sigma;
         paths.time_domain(0, 10'000);
-        const auto report =
-            myriad::solve<myriad::euler_maruyama>(myriad::device::best(), paths, {.step = 0.02, .seed = 1});
+        const auto report = myriad::solve<myriad::euler_maruyama>(
+            myriad::device::best(), paths, {.step = 0.02, .seed = 1, .events = {{.stop_after = 1}}});
         const Eigen::ArrayXd times = paths.t();
         // end of snippet
         const double mean = times.mean(), error = std::sqrt((times - mean).square().sum()) / 4000;
         const double expected = mean_first_passage(sigma);
         std::printf("sigma %.1f: %.2f +- %.2f, expected %.2f\n", sigma, mean, error, expected);
-        well = well && report.count(myriad::status::stopped_by_user) == paths.size() &&
+        well = well && report.count(myriad::status::stopped_by_event) == paths.size() &&
                std::abs(mean - expected) < 4 * error;
     }
     return well && std::fflush(stdout) == 0 ? 0 : 1;

@@ -30,3 +30,15 @@ warmest = weather[:, None] + 5 * np.array([5.0, 8.0])
 with np.errstate(invalid="ignore"):
     until_17 = 5 * np.log((warmest - at_six[:, None]) / (warmest - 17))
 np.testing.assert_array_equal(alarms_rung, (warmest < 17) | (until_17 > 2))
+
+# snippet: switches
+v, depth = my.states("v depth")
+surface = my.parameter("surface")
+dive = my.with_located_switches(my.model({depth: v, v: 9.81 - my.where(depth > surface, 2.0, 0.1) * v}, name="dive"))
+falls = my.solve(dive, {surface: [1.0, 5.0, 10.0]}, start={v: 0, depth: 0}, time=(0, 2), free=[surface])
+faster = falls.sensitivity[v, surface]  # how much faster, in the end, if the water is lower by one unit
+# end of snippet
+
+lower, higher = (my.solve(dive, {surface: np.array([1.0, 5.0, 10.0]) + by}, start={v: 0, depth: 0}, time=(0, 2),
+                          rtol=1e-10, atol=1e-10)[v] for by in (1e-5, -1e-5))
+np.testing.assert_allclose(faster, (lower - higher) / 2e-5, rtol=1e-4)

@@ -9,7 +9,7 @@ import numpy as np
 import myriad_ode as my
 
 x, sigma = my.state("x"), my.parameter("sigma")
-bistable = my.model({x: x - x**3}, noise={x: sigma}, after_step={my.end_phase: x > 1}, name="bistable")
+bistable = my.model({x: x - x**3}, noise={x: sigma}, events=my.event(x - 1, stop_after=1), name="bistable")
 
 run = my.solve(bistable, {sigma: [0.4, 0.5, 0.6, 0.7, 0.8]}, paths=2000, start={x: -1}, time=(0, 10_000),
                method="euler_maruyama", step=0.02, seed=1)
@@ -33,7 +33,7 @@ def kramers(sigma):
     return 2 * np.pi / np.sqrt(2) * np.exp(0.5 / sigma**2)
 
 
-assert (run.status == "stopped_by_user").all()
+assert (run.status == "stopped_by_event").all()
 exact = np.array([expected(s) for s in times["sigma"].values])
 assert (np.abs(mean - exact) < 4 * error).all(), (mean, error, exact)
 

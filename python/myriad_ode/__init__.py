@@ -15,8 +15,10 @@ from .dynamics.attractors import *  # noqa: F403
 from .dynamics.continuation import *  # noqa: F403
 from .dynamics.hysteresis import *  # noqa: F403
 from .dynamics.steady_states import *  # noqa: F403
+from .formats.cellml.model import CellmlModel as CellmlModel, read_cellml as read_cellml
 from .formats.petab.problem import PetabProblem as PetabProblem, read_petab as read_petab
 from .formats.sbml.model import SbmlModel as SbmlModel, read_antimony as read_antimony, read_sbml as read_sbml
+from .formats.sedml.experiments import TimeCourse as TimeCourse, read_sedml as read_sedml
 from .formats.xpp.model import XppModel as XppModel, read_xpp as read_xpp
 from .gradients.batched import *  # noqa: F403
 from .inference import designs as designs, noise_models as noise_models, priors as priors
@@ -29,6 +31,7 @@ from .models.cpp_model import CppModel as CppModel
 from .models.dose_table import *  # noqa: F403
 from .models.doses import *  # noqa: F403
 from .models.event import *  # noqa: F403
+from .models.located_switches import *  # noqa: F403
 from .models.methods import controls as controls, methods as methods
 from .models.sensitivities import *  # noqa: F403
 from .models.tangents import *  # noqa: F403
@@ -58,17 +61,18 @@ from .symbolic.table import *  # noqa: F403
 
 __version__ = _core.version
 
-_public = ["CppModel", "Damage", "Error", "EventChoice", "Interrupted", "Options", "PetabProblem", "RecordChoice",
-           "Run", "SampleChoice", "SbmlModel", "Study", "StudyResult", "XppModel", "cache", "controls", "designs",
-           "load", "methods", "noise_models", "open_study", "plots", "priors", "read_antimony", "read_petab",
-           "read_sbml", "read_xpp", "reduce", "solve", "status_names", "study", "verify",
+_public = ["CellmlModel", "CppModel", "Damage", "Error", "EventChoice", "Interrupted", "Options", "PetabProblem",
+           "RecordChoice", "Run", "SampleChoice", "SbmlModel", "Study", "StudyResult", "TimeCourse", "XppModel",
+           "cache", "controls", "designs", "load", "methods", "noise_models", "open_study", "plots", "priors",
+           "read_antimony", "read_cellml", "read_petab", "read_sbml", "read_sedml", "read_xpp", "reduce", "solve",
+           "status_names", "study", "verify",
            *(name for part in ("codegen.model", "dynamics.attractors", "dynamics.continuation", "dynamics.hysteresis",
                                "dynamics.steady_states", "gradients.batched", "inference.experiments",
                                "inference.fitting", "inference.least_squares", "inference.likelihood",
-                               "models.dose_table", "models.doses", "models.event", "models.sensitivities",
-                               "models.tangents", "models.trigger", "models.units", "results.exponents",
-                               "results.sensitivities", "sweeps.sweep", "symbolic.axes", "symbolic.delays",
-                               "symbolic.distributions", "symbolic.expression", "symbolic.functions",
+                               "models.dose_table", "models.doses", "models.event", "models.located_switches",
+                               "models.sensitivities", "models.tangents", "models.trigger", "models.units",
+                               "results.exponents", "results.sensitivities", "sweeps.sweep", "symbolic.axes",
+                               "symbolic.delays", "symbolic.distributions", "symbolic.expression", "symbolic.functions",
                                "symbolic.interpolate", "symbolic.symbols", "symbolic.table")
              for name in _sys.modules[f"{__name__}.{part}"].__all__)]
 # What `from myriad_ode import *` brings: nothing that has the name of a function of Python's, such as abs.

@@ -47,11 +47,13 @@ namespace myriad::python {
 namespace {
 
 /// What the package asks of a method: its stages, whether it takes fixed steps alone, whether it solves linear systems,
-/// and the noise that it takes, which is none of a method for ordinary equations.
+/// the noise that it takes, which is none of a method for ordinary equations, and whether it follows paths.
 template <class Method>
 nb::tuple facts_of() {
     const char* noise = "none";
+    bool follows_paths = false;
     if constexpr (detail::stochastic_method<Method>) {
+        follows_paths = Method::strong_order > 0;
         switch (Method::noise) {
             case noise_taken::any:
                 noise = "any";
@@ -64,7 +66,8 @@ nb::tuple facts_of() {
                 break;
         }
     }
-    return nb::make_tuple(Method::stages, Method::embedded_order == 0, detail::solves_linear_systems<Method>, noise);
+    return nb::make_tuple(Method::stages, Method::embedded_order == 0, detail::solves_linear_systems<Method>, noise,
+                          follows_paths);
 }
 
 /// The report, and the exception that ended the call early or None.

@@ -12,6 +12,13 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
+/// How many multiplications sparse factors may take: as many as those of a model that is compiled, and of larger
+/// matrices, whose tables no compiler has to make, a tenth of the n^3 / 3 that dense ones take.
+std::size_t most_updates_of(int n) {
+    const std::size_t size = at(n), dense = size * size * size / 3;
+    return std::max(static_cast<std::size_t>(most_matrix_updates), dense / 10);
+}
+
 }  // namespace
 
 stored_matrix::stored_matrix(int states, const tape_entries& entries) {
@@ -83,7 +90,7 @@ void stored_matrix::factorise(int n) {
         const places& its_row = right[at(step)] = row[at(best)];
         const places& its_column = below[at(step)] = column[at(best)];
         updates += least;
-        if (updates > static_cast<std::size_t>(most_matrix_updates)) return;  // dense, as of a compiled model
+        if (updates > most_updates_of(n)) return;  // dense
         for (const places* of : {&its_row, &its_column})
             for (const int k : *of) depth[at(k)] = std::max(depth[at(k)], depth[at(best)] + 1);
         for (const int k : its_column) join(row[at(k)], its_row, k, best);

@@ -314,3 +314,26 @@ def test_many_orbits_are_grouped_without_comparing_all():
     features = clusters.features_of(points, 0.01, may_return=True)
     leaders, group = clusters.grouped(features, points[:, -1], 0.01, 100)
     assert len(leaders) == 20 and len({(a, b) for a, b in zip(which, group)}) == 20
+
+
+def test_legends_tell_attractors_of_one_kind_apart():
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    model = my.model({y: -y, x: k * x - x**3}, name="pitchfork")
+    along = my.continuation(model, {k: [0.5, 1.0, 1.5]}, start={y: [0.5, 0.5], x: [-1.0, 1.0]}, time=(0, 1),
+                            transient=60, phases=16, **quick)
+    words = [text.get_text() for text in along.plot().get_legend().get_texts()]
+    assert sorted(word.partition(": ")[2] for word in words) == [  # y is alike
+        "stable node\nx = -1 at k = 1", "stable node\nx = 1 at k = 1"]
+    matplotlib.pyplot.close("all")
+
+
+def test_legends_tell_attractors_apart_that_only_a_hidden_state_does():
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    model = my.model({y: -y, z: -z, x: x - x**3}, name="hidden")
+    found = my.attractors(model, start={y: [0.5, 0.2], z: [0.5, -0.2], x: [-1.0, 1.0]}, time=(0, 1), transient=60,
+                          phases=16, **quick)
+    words = [text.get_text().rpartition("\n")[0] for text in found.plot(y, z).get_legend().get_texts()]
+    assert sorted(words) == ["stable node\nx = -1", "stable node\nx = 1"]
+    matplotlib.pyplot.close("all")

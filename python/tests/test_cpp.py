@@ -2,6 +2,7 @@
 """The C++ that models are written as: it compiles, without warnings, and computes what the examples' models compute."""
 
 import pathlib
+import re
 import shutil
 import subprocess
 
@@ -10,6 +11,7 @@ import pytest
 
 import example_models
 import myriad_ode as my
+from myriad_ode.symbolic import symbols
 
 root = pathlib.Path(__file__).resolve().parents[2]
 compiler = shutil.which("g++")
@@ -113,6 +115,19 @@ def test_every_operation_compiles_for_all_kinds_of_numbers_and_has_the_value_of_
     for (x, v, k), line in zip(points, printed, strict=True):
         expected = model.derivatives(0.25, [x, v], k=k, B=0.3, C=0.8, n=1, mode=1)
         assert [float(s) for s in line.split()] == pytest.approx(list(expected), rel=1e-13, nan_ok=True)
+
+
+@pytest.mark.parametrize("free", [False, True])
+def test_a_component_may_have_the_name_of_a_member_that_the_library_reads_in_other_models(free):
+    sources = (path.read_text() for path in (pathlib.Path(my.__file__).parent / "include").rglob("*.hpp"))
+    names = sorted({name for source in sources for name in re.findall(r"Model::(?:template )?([a-z]\w+)", source)})
+    assert {"lag", "history", "condition", "diffusion"} <= {*names}
+    values = [my.parameter(name) for name in names if symbols.is_allowed(name)]
+    x, v = my.states("x v")
+    model = my.model({x: v, v: -x * sum(values)}, events=[my.event(x, do={v: -0.9 * v})])
+    run = my.solve(model, {value: 1 / len(values) for value in values}, start={x: 1.0, v: 0.0}, time=(0, 1.5),
+                   free=values[:1] if free else None, interpreted=False, device="cpu", rtol=1e-9)
+    assert run[x] == pytest.approx(np.cos(1.5), rel=1e-7)
 
 
 def test_names_of_macros_and_of_the_struct():

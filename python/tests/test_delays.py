@@ -3,7 +3,11 @@
 refused."""
 
 import math
+import pathlib
 import pickle
+import signal
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -228,6 +232,17 @@ def test_a_lag_that_depends_on_the_state():
     np.testing.assert_allclose(run["x_sample"], np.where(times < np.e, times, np.exp(times / np.e)), rtol=1e-7)
 
 
+def test_a_jump_is_located_where_the_time_that_is_seen_runs_much_faster_than_t():
+    """y' = x(z), where x jumps from 1 to 2 at 150 and z runs from 0 at t = 200."""
+    z, speed = my.state("z"), my.state("speed")
+    model = my.model({x: 0, y: my.delayed(x, t - z), z: speed, speed: 0},
+                     stops=[my.stop(150, do={x: 2}), my.stop(200, do={speed: k})])
+    rates = np.geomspace(1e4, 1e6, 256)
+    ends = 200 + 180 / rates
+    run = my.solve(model, {k: rates}, start={x: 1, y: 0, z: 0, speed: 0}, time=(0, ends), rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(run["y"], ends + (ends - 200 - 150 / rates), atol=1e-10, rtol=0)
+
+
 def test_events_on_delayed_values_and_actions_that_read_them():
     model = my.model({x: 1, y: 0}, events=[
         my.event(my.delayed(x, tau) - 0.5, name="late", direction="rising", stop_after=1)])
@@ -237,6 +252,29 @@ def test_events_on_delayed_values_and_actions_that_read_them():
     model = my.model({x: 1, y: 0}, events=my.event(x - 2, do={y: my.delayed(x, tau)}))
     run = my.solve(model, {tau: lags}, start={x: 0, y: 0}, time=(0, 3), **exact)
     np.testing.assert_allclose(run["y"], 2 - lags, atol=1e-9)
+
+
+def test_events_are_found_where_a_delay_is_shorter_than_the_step_and_where_it_vanishes():
+    """u' = -u(t / 2) has the solution sum of (-t)^n / (n! 2^(n (n - 1) / 2))."""
+    u, = my.states("u")
+    past = my.delayed(u, t / 2)
+    model = my.model({u: -past}, events=[my.event(u - 0.5), my.event(past - 0.5, stop_after=1)])
+    run = my.solve(model, start={u: 1}, time=(0, 3), **exact)
+    series = np.polynomial.Polynomial([(-1)**n / (math.factorial(n) * 2**(n * (n - 1) / 2)) for n in range(20)])
+    assert run["status"] == "stopped_by_event" and series(run["t_last"][0] / 2) == pytest.approx(0.5, abs=1e-8)
+    np.testing.assert_allclose(run["u_end"], series(run["t_last"]), atol=1e-8)
+
+
+def test_the_start_of_a_phase_reads_the_past():
+    seen = my.accessory("seen")
+    equation, end = {x: my.delayed(x, 0.5)}, dict(method="dormand_prince_5", **exact)
+    for before, at_begin in ((None, 2.0), ({x: 2 + t}, 1.75)):
+        model = my.model(equation, initialise={seen: my.delayed(x, 0.25)}, history=before)
+        at = my.solve(my.model(equation, history=before), start={x: 2}, time=(0, 3), samples=[0.75, 1.75], **end)
+        expected = [[at_begin, *at["x_sample"][0]]]
+        for phases in (dict(time=(0, 1)), dict(time=(0, 3), carry_on=True, phase_length=1)):
+            run = my.solve(model, start={x: 2}, phases=3, record=[seen], **phases, **end)
+            np.testing.assert_allclose(run[seen], expected, atol=1e-8)
 
 
 def test_a_trigger_on_a_delayed_value():
@@ -340,6 +378,67 @@ def test_a_study_of_delays():
                                atol=1e-8)
 
 
+# A relay that is set by what x was tau ago, in rings that are full after a few time units; and the same with a lag that
+# vanishes at the begin, so that steps are iterated.
+relay = my.model({x: y - 0.3 * x, y: 0}, events=my.event(my.delayed(x, tau) - y / 2, direction="rising", do={y: -y}),
+                 after_step={y: my.where(my.delayed(x, tau) < -0.6, abs(y), y)})
+vanishing = my.model({x: -2 * my.delayed(x, k * t) * (1 - x * x) + 0.5 * y, y: -my.delayed(x, tau * (1 - my.exp(-t)))})
+in_short_rings = dict(start={x: 0.5, y: 1}, time=(0, 20), rtol=1e-6, atol=1e-6, maximum_step=1 / 16)
+
+
+def sweep_of(model):
+    return {tau: np.linspace(0.3, 1.5, 101)} | ({k: np.linspace(0.05, 0.3, 101)} if model is vanishing else {})
+
+
+def study_of(model, **more):
+    return my.study(model, sweep_of(model), keep=[x, y], **{**in_short_rings, "history_steps": 128, **more})
+
+
+@pytest.mark.parametrize("model, method", [
+    (relay, "dormand_prince_5"), pytest.param(vanishing, "cash_karp"),
+    pytest.param(vanishing, "verner_7", marks=pytest.mark.long)])
+def test_order_threads_and_chunks_change_no_bit(model, method):
+    whole = my.solve(model, sweep_of(model), history_steps=128, method=method, device="cpu:1", **in_short_rings)
+    assert whole.report.failed == 0 and whole.accepted_steps.min() > 300
+    back = my.solve(model, {name: values[::-1] for name, values in sweep_of(model).items()}, history_steps=128,
+                    method=method, device="cpu:2", **in_short_rings)
+    one = my.solve(model, {name: values[57] for name, values in sweep_of(model).items()}, history_steps=128,
+                   method=method, **in_short_rings)
+    studied = study_of(model, method=method).run(chunk=7, device="cpu:2")
+    for state in "xy":
+        np.testing.assert_array_equal(back[state][::-1], whole[state])
+        assert one[state][0] == whole[state][57]
+        np.testing.assert_array_equal(studied[f"{state}_end"], whole[state])
+
+
+SLOW = f"""
+import sys
+sys.path.insert(0, {str(pathlib.Path(__file__).parent)!r})
+from test_delays import long_study
+begun = lambda done, total: done > 20 and print("begun", flush=True)
+long_study().run(sys.argv[1], chunk=5, device="cpu:1", progress=begun)
+"""
+
+
+def long_study():
+    return study_of(relay, maximum_step=1 / 1024, history_steps=2048, time=(0, 60))
+
+
+def test_a_study_that_was_killed_in_the_middle_of_rings_goes_on_to_the_same_bits(tmp_path):
+    study_of(relay).run(device="cpu:1")  # so that the other process finds the kernel
+    child = subprocess.Popen([sys.executable, "-c", SLOW, str(tmp_path / "store")], stdout=subprocess.PIPE, text=True)
+    assert child.stdout.readline() == "begun\n"
+    child.send_signal(signal.SIGKILL)
+    child.communicate(timeout=60)
+    before = my.open_study(tmp_path / "store").done
+    assert 0 < before < 101
+    result = long_study().run(tmp_path / "store", device="cpu:2")
+    assert result.complete and result.instances == 101 - before
+    expected = long_study().run(device="cpu:2")
+    np.testing.assert_array_equal(result["x_end"], expected["x_end"])
+    np.testing.assert_array_equal(result["y_end"], expected["y_end"])
+
+
 def test_a_ring_that_is_too_short_and_lags_that_cannot_be_are_statuses():
     model = my.model({x: -my.delayed(x, tau)})
     run = my.solve(model, {tau: [1.0, -1.0, np.nan]}, start={x: 1}, time=(0, 5), invalid="mark")
@@ -375,9 +474,77 @@ def test_an_event_of_xppaut_sets_what_a_state_was():
     np.testing.assert_allclose(run["late_sample"][0], [0.0, -3.0, 4.5], atol=1e-9)
 
 
+# -- Slopes of the past ------------------------------------------------------------------------------------------------
+
+def test_slopes_of_the_past_are_delayed_values_of_their_own():
+    slope = my.delayed_slope(x, tau)
+    assert slope is my.delayed_slope(x, tau) and slope is not my.delayed(x, tau)
+    assert my.delayed(slope, 2) is my.delayed_slope(x, tau + 2) and repr(slope) == "delayed_slope(x, tau)"
+    assert pickle.loads(pickle.dumps(my.model({x: slope}))).delays[0].is_slope
+    model = my.model({x: slope + my.delayed(x, tau), y: my.delayed(x, 2 * tau)})
+    assert [one.name for one in model.delays] == ["x_slope", "x_past", "x_past_2"]
+    assert "return number == x_slope;" in model.cpp() and r"\dot{x}\left(t - \tau\right)" in model.latex()
+    both = my.delayed_slope([x, y], [tau, 1.0])
+    assert both[0] is slope and both[1] is my.delayed_slope(y, 1.0)
+    assert my.model("x' = k * delayed_slope(x, tau)", parameters="k tau").cpp("m") == my.model({x: k * slope}).cpp("m")
+    with pytest.raises(my.Error, match=r"delayed_slope\(x \* y, ...\).*only the slopes of states"):
+        my.delayed_slope(x * y, tau)
+
+
+def test_a_neutral_equation_against_its_closed_solution():
+    # x' + x = k (x'(t - tau) + x(t - tau)): the left side is k^n in the n-th interval of length tau.
+    model = my.model({x: k * (my.delayed_slope(x, tau) + my.delayed(x, tau)) - x})
+    factors, lags = np.array([-0.7, 0.3, 0.9]), np.array([1.0, 0.6, 1.7])
+    run = my.solve(model, {k: factors, tau: lags}, start={x: 1}, time=(0, 4.5), **exact)
+    for i, (factor, lag) in enumerate(zip(factors, lags)):
+        expected, power, begin = 1.0, 1.0, 0.0
+        while begin < 4.5:
+            power *= factor
+            expected = power + (expected - power) * math.exp(-min(lag, 4.5 - begin))
+            begin += lag
+        assert run["x_end"][i] == pytest.approx(expected, abs=1e-8)
+
+
+# -- Derivatives -------------------------------------------------------------------------------------------------------
+
+jumping = my.model({x: x / 10 - k * my.delayed(x, tau)}, history={x: 2 + my.sin(k * t)})
+
+
+def test_sensitivities_by_parameters_delays_and_initial_values_equal_differences():
+    options = dict(time=(0, 5.5), rtol=1e-11, atol=1e-11, history_steps=1024)
+    sweep = {tau: np.linspace(0.9, 1.6, 5), k: 1.1}
+    run = my.solve(jumping, sweep, start={x: 0.7}, free=[tau, k, x], **options)
+    assert (run.status == "success").all()
+    h = 1e-3
+    for name in (tau, k, x):
+        ends = {}
+        for step in (-2, -1, 1, 2):
+            changed = {key: value + step * h * (key is name) for key, value in sweep.items()}
+            ends[step] = my.solve(jumping, changed, start={x: 0.7 + step * h * (name is x)}, **options)["x_end"]
+        expected = (8 * (ends[1] - ends[-1]) - (ends[2] - ends[-2])) / (12 * h)
+        np.testing.assert_allclose(run[f"x_by_{name}_end"], expected, rtol=1e-6, atol=1e-6)
+
+
+def test_a_delay_is_found_by_a_fit():
+    at = np.linspace(0.5, 12, 24)
+    truth = my.solve(jumping, {tau: 1.2, k: 0.8}, start={x: 0.7}, time=(0, 12), samples=at, **exact)
+    fit = my.fit(jumping, {"t": at, x: truth["x_sample"][0]}, free={tau: (0.8, 1.8), k: (0.4, 1.2)}, start={x: 0.7},
+                 rtol=1e-8, atol=1e-8)
+    assert fit.best["tau"] == pytest.approx(1.2, abs=1e-5) and fit.best["k"] == pytest.approx(0.8, abs=1e-5)
+
+
+def test_the_largest_exponent_of_a_delayed_equation():
+    # x' = k x(t - 1): the real part of Lambert's W at k, the solution w of w exp(w) = k with the largest.
+    grown = my.with_tangents(my.model({x: k * my.delayed(x, 1)}), transient_phases=20)
+    run = my.solve(grown, {k: [1.0, -0.3]}, start={x: 0}, time=(0, np.inf), phases=220, phase_length=2.0, **exact)
+    np.testing.assert_allclose(my.exponents(run)[:, 0], [0.5671432904097838, -0.4894022271802149], atol=1e-6)
+
+
 # -- Refused -----------------------------------------------------------------------------------------------------------
 
 delaying = my.model({x: -my.delayed(x, tau)})
+neutral = my.model({x: k * my.delayed_slope(x, tau) - x})
+bent = my.model({x: -my.delayed(x, tau + x**2)})
 
 
 @pytest.mark.parametrize("lag, said", [
@@ -413,14 +580,18 @@ def test_what_a_model_with_delays_may_not_have_is_refused(make, said):
 
 
 @pytest.mark.parametrize("call, said", [
-    (lambda: my.with_sensitivities(delaying, [tau]), "derivatives of such models"),
-    (lambda: my.solve(delaying, {tau: 1.0}, start={x: 1}, time=(0, 1), free=[tau]), "derivatives of such models"),
-    (lambda: my.with_tangents(delaying), "tangents of such models"),
+    (lambda: my.with_sensitivities(delaying, [my.t_begin]), "no derivatives by t_begin"),
+    (lambda: my.with_sensitivities(my.model({x: -my.delayed(x, tau)}, triggers=my.trigger(x < 0, do={x: 1})), [tau]),
+     "delays and triggers"),
+    (lambda: my.with_sensitivities(neutral, [tau]), "derivatives of models that read slopes"),
+    (lambda: my.with_tangents(neutral), "tangents of models that read slopes"),
+    (lambda: my.with_tangents(my.model({x: my.delayed(x, tau), y: -y}), 2), "a model with delays has one"),
+    (lambda: my.solve(bent, {tau: 1.0}, start={x: 1}, time=(0, 1), free=[tau], method="runge_kutta_4", step=0.1),
+     "those of runge_kutta_4 do not"),
     (lambda: my.steady_states(delaying, {tau: 1.0}, start={x: 1}), "steady states of such models"),
     (lambda: my.attractors(delaying, {tau: 1.0}, start={x: [1, 2]}, time=(0, 1)), "attractors of such models"),
     (lambda: my.hysteresis(delaying, {tau: np.linspace(1, 2, 3)}, start={x: 1}, time=(0, 1)), "attractors of such"),
     (lambda: my.continuation(delaying, {tau: np.linspace(1, 2, 3)}, start={x: [1]}, time=(0, 1)), "attractors of such"),
-    (lambda: my.fit(delaying, {"t": [1.0], x: [1.0]}, free={tau: (0.5, 2)}, start={x: 1}), "fits of such models"),
     (lambda: my.batched(delaying, free=[tau], of=[x], start={x: 1}, time=(0, 1), adjoint=True),
      "derivatives of such models"),
     (lambda: delaying.derivatives(0, [1.0], tau=1.0), "their slopes by NumPy"),

@@ -102,6 +102,18 @@ def test_a_weight_that_is_zero_makes_a_derivative_zero():
     assert evaluate(transposed([my.sqrt(x) + y], [w], [x, y]), {**at, x: 0.0, w: 0.0}) == [0.0, 0.0]
 
 
+@pytest.mark.parametrize("expression", [1 / (1 + my.exp(x)), y / (1 + my.exp(x)), x / (2 + my.exp(3 * x) * y * y),
+                                        1 / my.cosh(x), 1 / (1 + my.exp2(x * x))])
+def test_quotients_by_what_overflows_have_the_derivative_zero(expression):
+    there = {**at, x: 800.0}
+    with np.errstate(over="ignore", invalid="ignore"):
+        row, = derivatives([expression], [x])
+        assert float(evaluate([my.sin(0.0) + row[0]], there)[0]) == 0
+        assert float(evaluate(transposed([expression], [constant(1.0)], [x]), there)[0]) == 0
+        assert float(evaluate(directional([expression], [x], [constant(2.0)]), there)[0]) == 0
+        assert np.isfinite(float(evaluate(transposed([expression], [constant(1.0)], [x]), at)[0]))
+
+
 def test_second_derivatives_do_not_stop_where_a_first_one_is_zero():
     """Of (1 + x^2)^0.5 at 0, where x^2 has the slope 0: d/dx x (1 + x^2)^-0.5 = 1."""
     slope = directional([my.sqrt(1 + x * x)], [x], [constant(1.0)])
@@ -190,3 +202,12 @@ def test_stiff_methods_pass_states_at_which_a_slope_is_infinite():
     for state in (u, v):
         np.testing.assert_allclose(run[state], [0.5 + (np.sqrt(0.5) - 0.5)**2, 1, 1], rtol=1e-7)
     assert (run[w] == 0).all()
+
+
+@pytest.mark.parametrize("method", ["rodas_5p", "rosenbrock_23"])
+def test_stiff_methods_pass_over_exponentials_that_overflow(method):
+    gate = 1 / (1 + my.exp(-1000 * x))  # whose derivative overflows before its denominator does, on the way
+    model = my.model({x: 1 + gate, y: k * y * gate - y})
+    run = my.solve(model, {k: 1.0}, start={x: -1, y: 1}, time=(0, 0.9), method=method, rtol=1e-9, atol=1e-9,
+                   interpreted=True)
+    np.testing.assert_allclose([run[x][0], run[y][0]], [-0.1, np.exp(-0.9)], rtol=1e-6)  # the method of second order

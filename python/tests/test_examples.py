@@ -35,7 +35,7 @@ def test_example_runs(program, started):
     if (program in ("cheat_sheet.py", "doses.py", "duffing.py", "global_sensitivity.py", "how_to/attractors.py",
                     "how_to/delays.py", "how_to/doses.py", "how_to/experiments.py", "how_to/patients.py",
                     "how_to/poincare.py", "noise.py",
-                    "sbml.py", "xpp.py")
+                    "cellml.py", "sbml.py", "xpp.py")
             or program.startswith("case_studies")):
         picture = place / pathlib.Path(program).with_suffix(".png").name
         assert picture.stat().st_size > 10_000

@@ -128,6 +128,104 @@ def test_a_stiff_drift_takes_long_steps_by_an_implicit_method():
     assert abs(run["y"].var() / variance - 1) < 4 * (2 / paths)**0.5
 
 
+# -- Events and extrema ------------------------------------------------------------------------------------------------
+
+def near(values, mean, variance=None, errors=5):
+    """Whether the moments of values are those, as far as their number tells."""
+    deviation = values.std() / np.sqrt(values.size)
+    fourth = ((values - values.mean())**4).mean()
+    of_variance = np.sqrt((fourth - values.var()**2) / values.size)
+    return (abs(values.mean() - mean) < errors * deviation
+            and (variance is None or abs(values.var() - variance) < errors * of_variance))
+
+
+def test_first_passages_have_their_law_by_long_steps():
+    level = my.parameter("level")
+    model = my.model({x: mu}, noise={x: sigma}, events=my.event(x - level, direction="rising", stop_after=1))
+    run = my.solve(model, {mu: [1.0, 2.0], sigma: 0.8, level: 1.0}, paths=20_000, start={x: 0}, time=(0, 100), step=0.3,
+                   seed=2)
+    assert (run.status == "stopped_by_event").all() and abs(run["x"] - 1).max() < 1e-14
+    for rate, times in zip((1.0, 2.0), run.sweep.unstack(run.t_last)):
+        assert near(times, 1 / rate, 0.64 / rate**3)
+
+
+def test_a_neuron_fires_at_the_mean_rate_and_rests_after_each_spike():
+    """A perfect integrator that rests for 0.5 after each spike, by a stop time that its action sets."""
+    spikes, awake, wakes = (my.accessory(name) for name in ("spikes", "awake", "wakes"))
+    model = my.model({x: mu * awake}, noise={x: sigma * awake}, accessories={spikes: 0, awake: 1, wakes: 1e9},
+                     events=my.event(x - 1, direction="rising",
+                                     do={spikes: spikes + 1, x: 0, awake: 0, wakes: my.time + 0.5}),
+                     stops=my.stop(wakes, do={awake: 1}))
+    t_end, paths = 300, 1000
+    run = my.solve(model, {mu: 1.0, sigma: 0.5}, paths=paths, start={x: 0}, time=(0, t_end), step=0.2, seed=3)
+    # renewals with intervals of mean 1 + 0.5 and variance 0.25, but for the first, which begins awake
+    assert near(run["spikes"], t_end / 1.5 + (0.25 / 1.5**2 + 1) / 2 - 1 / 1.5, t_end * 0.25 / 1.5**3, errors=6)
+
+
+def test_paths_with_events_are_the_same_in_studies_and_in_any_number():
+    model = my.model({x: -x}, noise={x: sigma}, accessories={"hits": 0},
+                     events=my.event(x - 1, do={x: 0, "hits": my.accessory("hits") + 1}))
+    call = dict(time=(0, 50), step=0.1, seed=4)
+    run = my.solve(model, {sigma: [0.6, 0.9]}, paths=50, start={x: 0}, **call)
+    few = my.solve(model, {sigma: [0.6]}, paths=7, start={x: 0}, **call)
+    np.testing.assert_array_equal(few["x"], run["x"][:7])
+    study = my.study(model, my.grid({sigma: [0.6, 0.9]}), paths=50, keep=["hits"], start={x: 0}, **call)
+    np.testing.assert_array_equal(np.ravel(study.run(chunk=9, device="cpu:1")["hits_end"]), run["hits"])
+    assert run["hits"].mean() > 2
+
+
+def test_extrema_of_paths_have_their_law_by_long_steps():
+    model = my.model({x: 0}, noise={x: sigma}, accessories={"top": my.phase_maximum(x), "low": my.phase_minimum(x)})
+    run = my.solve(model, {sigma: 2.0}, paths=20_000, start={x: 0}, time=(0, 1), step=0.5, seed=6)
+    for size in (run["top"], -run["low"]):  # that of a normal number
+        assert near(size, 2 * np.sqrt(2 / np.pi), 4 * (1 - 2 / np.pi))
+
+
+def test_an_event_that_stays_at_zero_under_noise_ends_the_instance():
+    passed = my.accessory("passed")
+    model = my.model({x: mu}, noise={x: sigma}, events=my.event(x - 1))
+    call = dict(start={x: 0}, time=(0, 5), step=0.1, paths=20)
+    assert (my.solve(model, constants | {mu: 1.0}, **call).status == "event_accumulation").all()
+    moved = my.model({x: mu}, noise={x: sigma}, accessories={passed: 0},
+                     events=my.event(my.where(passed > 0, 1.0, x - 1), do={passed: 1}))
+    assert (my.solve(moved, constants | {mu: 1.0}, **call).status == "success").all()
+
+
+def test_an_event_function_without_a_derivative_along_the_noise_ends_the_instance():
+    model = my.model({x: 0}, noise={x: sigma}, events=my.event(my.cbrt(x) - 1, stop_after=1))
+    run = my.solve(model, {sigma: [0.5]}, start={x: [0.0]}, time=(0, 5), step=0.1)
+    assert run.status == "not_finite"  # of the cube root at zero
+
+
+def test_methods_whose_steps_are_longer_than_the_drift_takes_have_no_events_and_no_extrema():
+    call = dict(start={x: 0}, time=(0, 1), step=0.1, method="linearly_implicit_euler_maruyama")
+    for more, what in ((dict(events=my.event(x - 1)), "events"), (dict(accessories={"a": my.phase_maximum(x)}),
+                                                                  "extrema")):
+        with pytest.raises(my.Error, match=f"the model's {what} are found within steps as if it did not: give method="):
+            my.solve(my.model({x: -x}, noise={x: 1}, **more), **call)
+
+
+@pytest.mark.parametrize("function, start, step", [
+    (x**3 - 1, 0.0, 0.5), (x**2 - 1, 0.2, 1.0), (my.exp(x) - np.e, 0.2, 1.0), (my.exp(20 * x) - np.exp(20), 0.2, 0.1),
+    (my.tanh(50 * (x - 1)), 0.2, 1.0), (my.where(x > 1, 1.0, -1.0), 0.0, 0.1), (my.cbrt(x - 1), 0.2, 0.5)])
+def test_an_event_on_a_noisy_path_is_where_its_function_is_zero_however_bent_that_is(function, start, step):
+    model = my.model({x: 1.0}, noise={x: 1.0}, events=my.event(function, stop_after=1), name="bent")
+    run = my.solve(model, start={x: start}, time=(0, 1e4), paths=4000, step=step, seed=3)
+    assert (run.status == "stopped_by_event").all()
+    np.testing.assert_allclose(np.abs(run["x"]), 1, atol=1e-8)
+
+
+def test_methods_that_follow_no_path_take_no_events_and_no_extrema():
+    call = dict(start={x: 0}, time=(0, 1), step=0.1, method="dri1")
+    with pytest.raises(my.Error, match="dri1 follows no path, .* the model's events to be found on: give method="):
+        my.solve(my.model({x: -x}, noise={x: 1}, events=my.event(x - 1)), **call)
+    with pytest.raises(my.Error, match="dri1 follows no path, .* the model's extrema to be found on: give method="):
+        my.solve(my.model({x: -x}, noise={x: 1}, accessories={"a": my.phase_maximum(x)}), **call)
+    with pytest.raises(my.Error, match="sub_samples is 3, but the model has a diffusion"):
+        my.solve(my.model({x: -x}, noise={x: 1}, events=my.event(x - 1)), start={x: 0}, time=(0, 1), step=0.1,
+                 sub_samples=3)
+
+
 # -- What a path depends on --------------------------------------------------------------------------------------------
 
 @pytest.fixture(scope="module")
@@ -263,9 +361,10 @@ def test_processes_are_numbered_as_noise_names_them():
     (dict(noise={x: {W: 1}}, after_step={W: 1}), "the Wiener process W stands in an expression or is assigned"),
     (dict(noise={x: {"y": 1}}), "'y' names both a state and a Wiener process"),
     (dict(noise={x: my.parameter("diffusion")}), "'diffusion' names a parameter .* in a model with noise"),
-    (dict(noise={x: 1}, events=my.event(x)), "a model with noise has no events and triggers yet .*after_step"),
-    (dict(noise={x: 1}, triggers=my.trigger(x > 1, do={y: 1})), "a model with noise has no events and triggers yet"),
-    (dict(noise={x: 1}, accessories={"a": my.phase_maximum(x)}), "has no extrema and integrals over a phase yet"),
+    (dict(noise={x: 1}, triggers=my.trigger(x > 1, do={y: 1})), "a model with noise has no triggers yet .*after_step"),
+    (dict(noise={x: 1}, accessories={"a": my.integral(x)}), "has no integrals over a phase yet"),
+    (dict(noise={x: 1}, accessories={"a": my.phase_maximum(x)}, events=my.event(x)),
+     "has no extrema over a phase beside events yet"),
     (dict(noise={x: 1}, mass_matrix={x: 2}), "a model with noise has no mass matrix yet"),
     (dict(noise={x: 1}, initialise={my.t_end: 3}), "a model with noise has no hooks that assign t_begin or t_end yet"),
 ])

@@ -263,6 +263,9 @@ def test_units_of_the_file_are_in_the_labels_of_results():
     assert table["A_sample"].attrs["units"] == "mmol/ml" and table["R_sample"].attrs["units"] == "mmol/min"
     assert table["t_sample"].attrs["units"] == "min" and table["k"].attrs["units"] == "1/min"
     assert "units" not in table["status"].attrs and "units" not in table["plain"].attrs
+    study = my.study(model, {"k": [0.5, 1.0]}, time=(0, 1), interpreted=True).run().to_xarray()
+    assert study["A_end"].attrs["units"] == "mmol/ml" and study["R_end"].attrs["units"] == "mmol/min"
+    assert study["k"].attrs["units"] == "1/min" and "units" not in study["status"].attrs
 
 
 _enzyme = [compartment("c", 2), species("S", concentration=3), species("E", concentration=0.5),
@@ -660,3 +663,34 @@ def test_files_of_many_reactions_are_read_in_time_that_grows_as_they_do():
 
     seconds(50)
     assert seconds(1200) < 25 * seconds(120)  # 12 to 14, and 49 where each species looked at all reactions
+
+
+def test_a_compartment_without_a_size_has_the_size_one():
+    parts = [compartment("c", size=None), species("A", concentration=3), species("B", amount=2),
+             reaction("R", "A -> B", "A * c")]
+    run = my.solve(my.read_sbml(sbml_models.document(parts)), time=(0, 1), rtol=1e-9, interpreted=True)
+    assert run["A_amount"] == pytest.approx(3 * np.exp(-1)) and run["B"] == pytest.approx(5 - 3 * np.exp(-1))
+
+
+_layout = "http://www.sbml.org/sbml/level3/version1/layout/version1"
+
+
+def test_a_document_of_level_2_may_declare_the_layout_of_level_3():
+    text = f"""<sbml xmlns="http://www.sbml.org/sbml/level2/version4" xmlns:layout="{_layout}" layout:required="false"
+        level="2" version="4"><model id="m"><listOfParameters><parameter id="x" value="3" constant="false"/>
+        </listOfParameters><listOfRules><rateRule variable="x"><math xmlns="http://www.w3.org/1998/Math/MathML">
+        <ci>x</ci></math></rateRule></listOfRules></model></sbml>"""
+    assert my.read_sbml(text).start() == {"x": 3}
+
+
+def test_errors_in_how_a_model_is_drawn_do_not_matter():
+    text = f"""<sbml xmlns="http://www.sbml.org/sbml/level3/version1/core" xmlns:layout="{_layout}"
+        xmlns:render="http://www.sbml.org/sbml/level3/version1/render/version1" layout:required="false"
+        render:required="false" level="3" version="1"><model id="m">
+        <layout:listOfLayouts><layout:layout layout:id="l"><layout:dimensions layout:width="1" layout:height="1"/>
+        </layout:layout><render:listOfGlobalRenderInformation><render:globalRenderInformation render:id="g"/>
+        </render:listOfGlobalRenderInformation></layout:listOfLayouts>
+        <listOfParameters><parameter id="x" value="3" constant="false"/></listOfParameters>
+        <listOfRules><rateRule variable="x"><math xmlns="http://www.w3.org/1998/Math/MathML"><ci>x</ci></math>
+        </rateRule></listOfRules></model></sbml>"""
+    assert my.read_sbml(text).start() == {"x": 3}

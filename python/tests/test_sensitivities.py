@@ -118,6 +118,51 @@ def test_runs_without_sensitivities_say_how_to_get_them():
         run.sensitivity  # noqa: B018
 
 
+def reactions():
+    a, b, c = my.states("a b c")
+    k1, k2, k3 = my.parameters("k1 k2 k3")
+    return my.model({a: -k1 * a + k3 * b * c, b: k1 * a - k3 * b * c - k2 * b * b, c: k2 * b * b}, name="robertson")
+
+
+def oscillators():
+    y, w, pull = my.states("y1 y2 y3"), my.parameter("w"), my.shared("pull")
+    slopes = {y[i]: w * (i + 1) + pull * sum(my.sin(y[j] - y[i]) for j in range(3)) for i in range(3)}
+    return my.model(slopes, name="oscillators")
+
+
+@pytest.mark.parametrize("model, given, start, free, more", [
+    (spring, {k: K, B: 0.5}, {x: 1, v: 0}, [k, x, B], dict(samples=[0.5, 1, 2], record=[x])),
+    (spring, {k: K, B: 0.5}, {x: 1, v: 0}, [k], dict(sensitivity_control=False, phases=3, carry_on=True,
+                                                    phase_length=0.5)),
+    (reactions(), {"k1": [0.03, 0.05], "k2": 3e7, "k3": 1e4}, {"a": 1, "b": 0, "c": 0}, ["k1", "a"],
+     dict(method="rodas_5p", atol=1e-12)),
+    (oscillators(), {"w": [0.5, 1.0], "pull": 0.3}, [0.1, 0.2, 0.5], ["pull", "w"], {}),
+])
+def test_interpreted_sensitivities_are_those_that_are_compiled(model, given, start, free, more):
+    start = start if isinstance(start, dict) else dict(zip(model.states, start))
+    call = dict(start=start, time=(0, 2), free=free, rtol=1e-9, atol=1e-11) | more
+    compiled = my.solve(model, given, interpreted=False, device="cpu", **call)
+    run = my.solve(model, given, interpreted=True, device="cpu", **call)
+    assert set(run) == set(compiled)
+    for name in run.sensitivity:
+        np.testing.assert_allclose(run.sensitivity[name], compiled.sensitivity[name], rtol=1e-8, atol=1e-13)
+    np.testing.assert_array_equal(run.accepted_steps, compiled.accepted_steps)
+    np.testing.assert_array_equal(run.sensitivity[my.time], compiled.sensitivity[my.time])
+
+
+def test_a_fit_needs_no_compiler():
+    times = np.linspace(0, 3, 13)
+    found = my.fit(my.model({x: -k * x}, name="decay"), {"t": times, x: 2.5 * np.exp(-0.7 * times)},
+                   free={k: (0.1, 10), x: (0.1, 10)}, starts=4, interpreted=True, rtol=1e-9)
+    assert [found.best["k"], found.best["x"]] == pytest.approx([0.7, 2.5], rel=1e-6)
+
+
+def test_sensitivities_through_events_are_refused_by_the_interpreter():
+    bouncing = my.model({x: v, v: -k}, events=[my.event(x, do={v: -v})], name="bouncing")
+    with pytest.raises(my.Error, match="it has sensitivities, and events, .* or accessories: install"):
+        my.solve(bouncing, {k: 1.0}, start={x: 1, v: 0}, time=(0, 1), free=[k], interpreted=True)
+
+
 @pytest.mark.long
 def test_stiff_methods_have_the_sensitivities_of_robertsons_reactions():
     a, b, c = my.states("a b c")

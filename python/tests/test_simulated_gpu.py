@@ -512,6 +512,25 @@ compare(my.model({{x: v + around @ v, v: force - k * x}}), precision={precision!
 """)
 
 
+def test_units_that_see_each_other_late_are_the_cpus_and_one_thread_integrates_an_instance(run):
+    run("""
+n, tau, strength = 18, my.parameter("tau"), my.parameter("strength")
+units = my.units(n)
+angle = units.state("angle")
+A = units.full_coupling("A", np.ones((n, n)) / n)
+sine, cosine = A @ my.delayed(np.sin(angle), tau), A @ my.delayed(np.cos(angle), tau)
+late = my.model({angle: 1 + strength * (np.cos(angle) * sine - np.sin(angle) * cosine)})
+solved = lambda device, taus: my.solve(late, {tau: taus, strength: 0.7}, start={angle: 0.2 * np.arange(n)}, time=(0, 6),
+                                       rtol=1e-8, atol=1e-8, device=device)
+taus = np.linspace(0.3, 1.2, 11)
+there, here, some = solved("cuda", taus), solved("cpu", taus), solved("cuda", taus[4:7])
+assert there.report.threads_per_instance == 1 and (there.status == "success").all()
+for state in late.states:
+    assert np.allclose(there[state], here[state], rtol=1e-12, atol=1e-12), state
+    assert np.array_equal(there[state][4:7], some[state])
+""")
+
+
 @pytest.mark.thorough
 def test_teams_call_the_hooks_of_units_and_find_their_events_and_summaries_as_one_thread_does(run):
     run("n, threads = 3, 2" + TEAMS + """

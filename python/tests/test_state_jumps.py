@@ -59,7 +59,7 @@ def test_a_jump_in_the_quantity_of_a_summary_is_known():
 def test_gradients_of_a_model_that_jumps_by_its_state_are_refused_with_a_cure():
     """They would leave out what the jump contributes: here all that depends on c."""
     falling = my.model({x: my.where(x > c, -2.0, -1.0)})
-    why = r"as the equations jump where `x > c` changes.*make each an event whose action sets an accessory"
+    why = r"as the equations jump where `x > c` changes.*give my.with_located_switches\(model\)"
     data = {"t": np.array([0.5, 1.0]), x: np.array([0.1, 0.2])}
     refused = [
         lambda: my.fit(falling, data, free={c: (0.1, 1.0)}, start={x: 1.0}, starts=2),

@@ -141,6 +141,30 @@ def test_stiff_methods_have_the_bits_of_compiled_ones(count):
         assert getattr(compiled.report.matrix, one) == getattr(interpreted.report.matrix, one), one
 
 
+def test_large_sparse_matrices_that_no_compiler_takes_stay_sparse():
+    """Diffusion on a grid, compared with its eigenvalues: its factors take more than 4096 multiplications, of the
+    4 million of dense ones."""
+    side, names = 15, np.array([f"x{i}" for i in range(15 * 15)]).reshape(15, 15)
+    x, d = np.array(my.states(list(names.ravel()))).reshape(side, side), my.parameter("d")
+    inflow = {}
+    for i in range(side):
+        for j in range(side):
+            there = [x[i + a, j + b] for a, b in ((1, 0), (-1, 0), (0, 1), (0, -1))
+                     if 0 <= i + a < side and 0 <= j + b < side]
+            inflow[x[i, j]] = d * (sum(there) - 4 * x[i, j])
+    run = my.solve(my.model(inflow, name="grid"), {d: 3.0}, start={n: float(n == "x0") for n in names.ravel()},
+                   time=(0, 1), method="rodas_5p", rtol=1e-8, atol=1e-12, interpreted=True)
+    matrix = run.report.matrix
+    assert matrix.states == 225 and matrix.jacobian_entries == 1065
+    assert 2000 < matrix.factor_entries < 8000
+    line = 2 * np.eye(side) - np.eye(side, k=1) - np.eye(side, k=-1)
+    values, vectors = np.linalg.eigh(line)
+    along = vectors @ (np.exp(-3 * values) * vectors[0])
+    expected = np.outer(along, along)
+    np.testing.assert_allclose([run[n][0] for n in names.ravel()], expected.ravel(), rtol=1e-6, atol=1e-9)
+
+
+
 @pytest.mark.parametrize("method", ["tsitouras_5", "rodas_5p"])
 def test_a_thousand_states_are_interpreted(method):
     """Decays of a chain, each of which the next one feeds: x_i = exp(-t) t^i / i! for the first ones."""

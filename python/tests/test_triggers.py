@@ -281,3 +281,37 @@ def test_a_trigger_on_whose_surface_each_step_ends_is_neither_lost_nor_an_accumu
     run = my.solve(model, start={clock: 0, count: 0}, time=(0, 2.005), method="dormand_prince_5", rtol=1e-9, atol=1e-9,
                    maximum_step=step, step=step)
     assert run.status[0] == "success" and run["count"][0] == 200 and run["clock"][0] == pytest.approx(0.005, abs=1e-12)
+
+
+@pytest.mark.parametrize("remainder, times", [
+    (lambda t: my.fmod(t, 12) == 0, [0, 12, 24, 36]), (lambda t: my.fmod(t, 12) == 7, [7, 19, 31]),
+    (lambda t: t - 12 * my.floor(t / 12) == 0, [0, 12, 24, 36]), (lambda t: my.fmod(t, 12) == 12, []),
+    (lambda t: (t % 12 == 11) & (t > 20), [23, 35])])
+def test_a_trigger_that_a_remainder_equals_a_number_happens_once_in_each_period(remainder, times):
+    x, = my.states("x")
+    model = my.model({x: 0 * x}, triggers=my.trigger(remainder(my.time), do={x: x + 1}, initial_value=False))
+    run = my.solve(model, start={"x": 0}, time=(0, 40), samples=np.arange(40) + 0.5, interpreted=True)
+    assert run["x"][0].tolist() == [sum(one <= i for one in times) for i in range(40)]
+
+
+def test_a_trigger_whose_name_ends_with_an_underscore_may_compare_for_equality():
+    x, = my.states("x")
+    model = my.model({x: 1 + 0 * x}, triggers=my.trigger(x == 1, do={x: 5}, name="event_"))
+    assert my.solve(model, start={"x": 0}, time=(0, 2), interpreted=True)["x"] == pytest.approx(6)
+
+
+def test_values_of_the_time_of_a_trigger_have_derivatives():
+    a, k, x = my.parameter("a"), my.parameter("k"), my.state("x")
+    model = my.model({x: -k * x}, triggers=[
+        my.trigger(my.time >= 1, do={x: x + a}, values_from_trigger_time=True, priority=2, delay=0.5),
+        my.trigger(my.time >= 2, do={x: 2 * x + a}, values_from_trigger_time=True, priority=1)], name="kept")
+    run = my.solve(model, {a: 0.3, k: 0.5}, start={x: 1.5}, time=(0, 3), free=[a, k], rtol=1e-10)
+
+    def end(a, k):
+        early = 1.5 * np.exp(-k)
+        return (2 * (early + a) * np.exp(-0.5 * k) + a) * np.exp(-k)
+
+    step = 1e-6
+    assert run["x"] == pytest.approx(end(0.3, 0.5), rel=1e-8)
+    assert run.sensitivity[x, a] == pytest.approx((end(0.3 + step, 0.5) - end(0.3 - step, 0.5)) / 2e-6, rel=1e-6)
+    assert run.sensitivity[x, k] == pytest.approx((end(0.3, 0.5 + step) - end(0.3, 0.5 - step)) / 2e-6, rel=1e-6)

@@ -185,13 +185,18 @@ def test_a_file_gives_its_name_to_the_model(tmp_path):
 @pytest.mark.parametrize("line, said", [
     ("wiener w\ny'=w*w", "a sum of Wiener processes"),
     ("wiener w\ny'=if(w>0)then(1)else(2)", "a sum of Wiener processes"), ("wiener w\ny'=w\ninit y=w", "on noise"),
-    ("wiener w\ny'=w\nglobal 1 {x-1} {x=0}", "no events"), ("wiener 3", "wiener name"),
+    ("wiener 3", "wiener name"), ("wiener w\n0=x+z+w\nsolv z=1", "an algebraic equation has noise"),
+    ("wiener w\ny'=w\n0=x+z\nsolv z=1", "algebraic equations beside noise"),
     ("wiener x", "a second time"), ("markov z 2", "Markov"), ("y'=delay(x,-1)", "how long ago"),
-    ("bdry x-1", "boundary"),
-    ("0=x+y", "algebraic equations"), ("solv y=1", "algebraic equations"), ("x(t+1)=2*x", "a map"),
-    ("y(t)=int{exp(-t)#x}", "integral equations"), ("y'=int[.5]{exp(-t)#x}", "integral equations"),
-    ("volterra y=1", "integrals over the past"),
-    ("y'=ran(1)", "random numbers"), ("special k=conv(even,11,3,w,x)", "networks"), ("export {x} {y}", "libraries"),
+    ("0=x+y", "1 algebraic equations, 0=, for 0 unknowns of solv"), ("solv y=1", "0 algebraic equations"),
+    ("0=x+y\nsolv y=$", "`$` is not understood"), ("0=x+y\nsolve 3", "solv name=guess"), ("x(t+1)=2*x", "iterate it"),
+    ("@ total=9,meth=discrete", "iterate it"), ("@ METHOD=Disc", "iterate it"),
+    ("y(t)=int{exp(-t)#x}", "integrals over the past"), ("y'=int[.5]{exp(-t)#x}", "integrals over the past"),
+    ("volterra y=1", "integrals over the past"), ("y'=int{exp(-t)#x}", "as an equation of its own"),
+    ("y'=ran(1)", "random numbers"), ("special k=conv(even,11,3,w,x)", "networks"),
+    ("export {x} {y}\n@ dll_lib=f.so", "is not called"),
+    ("table f % 3 0 2 t*x", "of states"),
+    ("table f % 3 0 2 a*t\npar a=2\ny'=f(x)", "looked up at what varies"),
     ("global 0 {x-1} {x=0}", "sign 0"), ("global 1 {x-1} {q=0}", "neither a state nor a parameter"),
     ("y'=q+1", "`q` is unknown"), ("early=late\nlate=early+x", "`early` depends on itself"),
     ("y'=f(x,2)\nf(x)=x", "2 arguments"),
@@ -214,6 +219,22 @@ def test_names_with_letters_outside_ascii_are_those_of_the_model_in_ascii_letter
     np.testing.assert_allclose(run["x"], exact, rtol=1e-7)
     np.testing.assert_allclose(run["y"], 12.0, rtol=1e-12)
     np.testing.assert_allclose(run["ω"], exact * [3.0, 4.0], rtol=1e-7)
+
+
+def test_of_an_option_that_is_given_twice_the_last_holds():
+    model = my.read_xpp("x'=-x\n@ total=5,meth=discrete\n@ meth=qualrk,total=8\n")
+    assert model.time == (0, 8) and model.settings["meth"] == "qualrk"
+
+
+def test_auxiliary_quantities_may_have_points_in_their_names_and_statements_longer_words():
+    model = my.read_xpp("x'=-x\ninitial x=1\ntabular f % 3 0 2 2*t\naux K.E.=f(x)\n")
+    run = my.solve(model, time=(0, 1), rtol=1e-9, atol=1e-9, interpreted=True)
+    np.testing.assert_allclose(run["k_e"], 2 * np.exp(-1), rtol=1e-7)
+
+
+@pytest.mark.parametrize("end", ["d", "done", "DONE", "dnoe"])
+def test_a_word_that_begins_with_d_ends_a_file(end):
+    assert my.read_xpp(f"x'=-x\n{end}\nwhat is this\n").states == ["x"]
 
 
 def test_the_number_of_equations_may_stand_first():
@@ -287,3 +308,67 @@ def test_formulas_as_deep_as_files_have_them_are_read_and_functions_that_call_tw
     assert "q0" in my.read_xpp(chain + "x'=" + "(" * 400 + "q0" + ")" * 400 + "\n").outputs
     calls = "f0(x)=x/2\n" + "".join(f"f{i}(x)=f{i - 1}(x)/2+f{i - 1}(x)/2\n" for i in range(1, 60))
     assert list(my.read_xpp(calls + "x'=f59(x)\n").states) == ["x"]
+
+
+of_study = """
+par p=2, stop=9
+!q=p^2
+x'=-p*x
+y'=1
+init x=1
+global 1 {y-1.5} {p=3}
+global 1 {y-stop} {arret=1}
+aux Rate=p*x
+aux t__y=t+y
+aux state=x+y
+"""
+
+
+@pytest.mark.parametrize("interpreted", [True, False])
+def test_outputs_have_their_names_and_values_in_studies(tmp_path, interpreted):
+    model = my.read_xpp(of_study)
+    sweep, call = my.grid(p=[1.0, 2.0, 4.0], stop=[1.0, 9.0]), dict(time=(0, 1), phases=3, carry_on=True,
+                                                                    phase_length=0, interpreted=interpreted)
+    run = my.solve(model, sweep, record=dict(states=["x", "y"], time=True), **call)
+    study = my.study(model, sweep, **call).run(store=tmp_path / "study")
+    for name in ("rate", "Rate", "q", "t__y", "state"):
+        end = f"{name}_end"
+        np.testing.assert_array_equal(study[end].ravel(), run[end], err_msg=name)
+        np.testing.assert_array_equal(study.to_xarray()[end].values.ravel(), run[end])
+        np.testing.assert_array_equal(my.open_study(tmp_path / "study")[name].ravel(), run[end])
+    recorded = my.study(model, sweep, record=dict(states=["x", "y"], time=True), **call).run()
+    for name in ("rate", "t__y", "state"):  # q follows from parameters alone, and is no record of a run either
+        np.testing.assert_array_equal(recorded[name].reshape(run[name].shape), run[name], err_msg=name)
+    assert "q" not in recorded
+    some = my.study(model, sweep, keep=["rate", "x"], reduce=my.reduce.maximum("state_end"), **call).run()
+    assert {"rate_end", "x_end", "state_end_maximum"} <= {*some} and "state_end" not in some
+    assert some["state_end_maximum"] == run["state_end"].max()
+
+
+def test_outputs_of_failed_instances_are_nan_in_studies():
+    failed = my.study(my.read_xpp(of_study), time=(0, 1), max_steps=1, interpreted=True).run()
+    assert failed.failed.all() and np.isnan(failed["rate_end"]).all()
+
+
+def test_what_the_initial_value_problem_does_not_need_is_read_over():
+    model = my.read_xpp("x'=v\nv'=0\nb x-1\nbndry v'\nbdry (x'-v)\nexport {x} {v}\nonly x\ninit v=2\n")
+    assert model.boundary_conditions == ["x-1", "v'", "(x'-v)"]
+    np.testing.assert_allclose(my.solve(model, time=(0, 3), interpreted=True)["x"], 6)
+
+
+def test_a_table_of_a_formula_with_parameters_is_looked_up_at_numbers():
+    text = "table w % 5 -2 2 a*exp(-abs(t)/s)\npar a=2,s=1\nx'=sum(-2,2)of(w(i'))\nq=w(.5)\np=w(3)\n"
+    run = my.solve(my.read_xpp(text), {"a": [2.0, 5.0], "s": [1.0, 0.5]}, time=(0, 1), interpreted=True)
+    a, s = np.array([2.0, 5.0]), np.array([1.0, 0.5])
+    np.testing.assert_allclose(run["x"], a * (1 + 2 * np.exp(-1 / s) + 2 * np.exp(-2 / s)), rtol=1e-9)
+    np.testing.assert_allclose(run["q"], a * (1 + np.exp(-1 / s)) / 2)
+    np.testing.assert_allclose(run["p"], a * (2 * np.exp(-2 / s) - np.exp(-1 / s)))
+
+
+def test_algebraic_equations_have_unknowns_that_are_states_of_a_mass_matrix():
+    model = my.read_xpp("x'=-y\n0=y+y^3-a*x\nsolv y=1\npar a=2\naux rest=y+y^3-2*x\ninit x=1\n")
+    assert model.states == ["x", "y"] and model.mass_matrix.tolist() == [[1, 0], [0, 0]]
+    run = my.solve(model, time=(0, 1), method="rodas_5p", make_consistent=True, rtol=1e-10, atol=1e-12)
+    y = run["y"][0]  # 2 t = log(y_0 / y) + 1.5 (y_0^2 - y^2), of dx = (1 + 3 y^2) dy / 2 and y_0 = 1
+    assert np.log(1 / y) + 1.5 * (1 - y ** 2) == pytest.approx(2.0, rel=1e-8)
+    np.testing.assert_allclose(run["rest"], 0, atol=1e-9)

@@ -9,8 +9,8 @@
 // limit: integrate_ensemble<keller_miksis, verner_7> registers 255 stack 0 spill 0
 // limit: integrate_ensemble<keller_miksis, dormand_prince_8> registers 176 stack 0 spill 0
 // limit: integrate_ensemble<relief_valve_model, cash_karp> registers 96 stack 864 spill 0
-// limit: integrate_ensemble<relief_valve_model, verner_7> registers 96 stack 952 spill 400
-// limit: integrate_ensemble<relief_valve_model, dormand_prince_8> registers 96 stack 936 spill 404
+// limit: integrate_ensemble<relief_valve_model, verner_7> registers 96 stack 952 spill 448
+// limit: integrate_ensemble<relief_valve_model, dormand_prince_8> registers 96 stack 936 spill 420
 #include <myriad/cuda/kernel.cuh>
 #include <myriad/methods.hpp>
 

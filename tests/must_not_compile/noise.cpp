@@ -20,12 +20,18 @@
 // expect: diffusion has a wrong signature: it must be .*a row for each state
 // case: diffusion_with_the_inputs_before_the_states
 // expect: the arguments of diffusion are exchanged: they are the time, the states and the inputs, in this order
-// case: diffusion_with_events
-// expect: a model with a diffusion has no events yet: .*in after_step
+// case: events_on_no_path
+// expect: this method follows no path, so that between the ends of a step there is nothing for an event
+// case: events_within_steps_of_a_stiff_drift
+// expect: this method is for steps in which a stiff drift undoes the noise
+// case: diffusion_with_triggers
+// expect: a model with a diffusion has no triggers yet: .*in after_step
 // case: diffusion_that_writes_its_time_domain
 // expect: a model with a diffusion may not declare writes_time_domain
-// case: diffusion_with_summaries
-// expect: a model with a diffusion has no summaries yet
+// case: diffusion_with_integrals
+// expect: a model with a diffusion has no integrals over a phase yet
+// case: extrema_beside_events
+// expect: a model with a diffusion has no extrema over a phase beside events yet
 // case: diffusion_with_tangents
 // expect: with_tangents and with_sensitivities take no model with a diffusion
 // case: diffusion_with_sensitivities
@@ -135,7 +141,8 @@ struct exchanged : walk {
 };
 MYRIAD_INSTANTIATE(exchanged, myriad::euler_maruyama)
 #endif
-#if defined(CASE_diffusion_with_events)
+#if defined(CASE_events_on_no_path) || defined(CASE_diffusion_with_triggers) || \
+    defined(CASE_events_within_steps_of_a_stiff_drift)
 struct watched : walk {
     enum event { crossing, n_event };
 
@@ -144,7 +151,21 @@ struct watched : walk {
         return myriad::vec<R, n_event>{s[x]};
     }
 };
-MYRIAD_INSTANTIATE(watched, myriad::euler_maruyama)
+#endif
+#if defined(CASE_events_on_no_path)
+MYRIAD_INSTANTIATE(watched, myriad::dri1)
+#endif
+#if defined(CASE_events_within_steps_of_a_stiff_drift)
+MYRIAD_INSTANTIATE(watched, myriad::linearly_implicit_euler_maruyama)
+#endif
+#if defined(CASE_diffusion_with_triggers)
+struct triggered : watched {
+    enum trigger { rise, n_trigger };
+
+    MYRIAD_FUNCTION static bool condition(int, const auto& positive, const auto&) { return positive[crossing]; }
+    MYRIAD_FUNCTION static void after_trigger(int, auto&) {}
+};
+MYRIAD_INSTANTIATE(triggered, myriad::euler_maruyama)
 #endif
 #if defined(CASE_diffusion_that_writes_its_time_domain)
 struct moving : walk {
@@ -154,11 +175,26 @@ struct moving : walk {
 };
 MYRIAD_INSTANTIATE(moving, myriad::euler_maruyama)
 #endif
-#if defined(CASE_diffusion_with_summaries)
-struct summarised : walk {
+#if defined(CASE_diffusion_with_integrals) || defined(CASE_extrema_beside_events)
+#if defined(CASE_diffusion_with_integrals)
+struct base : walk {
+    static constexpr auto kind = myriad::over_phase::integral;
+};
+#else
+struct base : walk {
+    enum event { crossing, n_event };
+    static constexpr auto kind = myriad::over_phase::maximum;
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto, const myriad::vec<R, n_state>& s, const auto&) {
+        return myriad::vec<R, n_event>{s[x]};
+    }
+};
+#endif
+struct summarised : base {
     enum observed { square, n_observed };
     enum accessory { largest, n_accessory };
-    static constexpr myriad::summary summaries[] = {{square, myriad::over_phase::maximum, largest}};
+    static constexpr myriad::summary summaries[] = {{square, kind, largest}};
 
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_observed> observe(auto, const myriad::vec<R, n_state>& s, const auto&) {

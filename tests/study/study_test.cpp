@@ -22,6 +22,7 @@
 #include <unistd.h>
 
 #include "tests/catch.hpp"
+#include "tests/kernel/model/delay_models.hpp"
 #include "tests/study/models.hpp"
 #include "tests/study/store/content.hpp"
 #include "tests/support/message_of.hpp"
@@ -361,6 +362,56 @@ TEST_CASE("A study in a folder is stopped, goes on, and has the same bits", "[st
     CHECK_THAT(message_of([&] { s.run(); }), Contains("units"));
     s.options.relative_tolerance = 1e-6;
     CHECK_THAT(message_of([&] { s.run(); }), Contains("relative_tolerance"));
+}
+TEST_CASE("A study of delays that is stopped where rings are full goes on, and has the bits of a call", "[study]") {
+    using delays::echo;
+    constexpr std::int64_t lags = 30;
+    options o;
+    o.phases = 24;
+    o.phase_length = 0.25;
+    o.maximum_step = 1.0 / 64;
+    o.history_steps = 128;  // those of t = 2
+    const folder here;
+    study<echo, cash_karp> s;
+    s.axis("tau", linspace(0.2, 1.5, lags));
+    for (const char* name : {"x", "z", "seen", "time"}) s.set(name, 0);
+    s.set("period", 1.3);
+    s.time_domain(0, std::numeric_limits<double>::infinity());
+    s.options = o;
+    s.keep.end = {"x", "z", "seen", "time"};
+    s.devices = {device::cpu(2)};
+    s.chunk = 4;
+    s.store(here.store());
+    std::atomic<int> begun{0};
+    s.generate("none", [&](std::int64_t, ensemble<echo>&) {
+        if (++begun == 3) s.stop();
+    });
+    CHECK(!s.run().complete);
+    const study_result r = s.run();
+    REQUIRE(r.complete);
+    CHECK(r.instances < lags);
+
+    ensemble<echo> e(lags);
+    for (std::int64_t i = 0; i < lags; ++i) e.parameter(echo::tau)[i] = linspace(0.2, 1.5, lags)[i];
+    e.parameter(echo::period) = 1.3;
+    e.state(echo::x) = 0;
+    e.state(echo::z) = 0;
+    e.accessory(echo::seen) = 0;
+    e.accessory(echo::time) = 0;
+    e.time_domain(0, std::numeric_limits<double>::infinity());
+    for (const int phases : {7, 17}) {  // in calls that go on, as well
+        o.phases = phases;
+        solve<cash_karp>(device::cpu(1), e, o);
+    }
+    const auto x = r.values("x_end"), z = r.values("z_end"), seen = r.values("seen_end"), time = r.values("time_end");
+    for (std::size_t i = 0; i < lags; ++i) {
+        const auto at = static_cast<std::int64_t>(i);
+        REQUIRE(e.status(at) == status::success);
+        CHECK(x[i] == e.state(echo::x)[at]);
+        CHECK(z[i] == e.state(echo::z)[at]);
+        CHECK(seen[i] == e.accessory(echo::seen)[at]);
+        CHECK(time[i] == e.accessory(echo::time)[at]);
+    }
 }
 TEST_CASE("SIGINT and SIGTERM end a study after the chunks under way, if it was asked for", "[study]") {
     for (const int signal : {SIGINT, SIGTERM}) {

@@ -65,9 +65,9 @@ MUTATIONS = {
                          "R(0)))) return R(0);", "", "a function past zero at the start that goes on crosses there"),
     "last_of_events": ("earliest_crossing.hpp", "if (x < first.fraction) first", "if (x > first.fraction || "
                        "first.fraction > R(1)) first", "the earliest crossing is located first"),
-    "coarse_roundings_at_start": ("locator.hpp", "plain = plain && tolerance > R(0) && (near ||",
-                                  "plain = plain && (near ||", "without a tolerance, rounding decides"),
-    "others_pass_plainly": ("locator.hpp", "left && (is_target || !own.redo.crossed[j])", "left",
+    "coarse_roundings_at_start": ("locator.hpp", "plain = plain & (tolerance > R(0)) & (near |",
+                                  "plain = plain & (near |", "without a tolerance, rounding decides"),
+    "others_pass_plainly": ("locator.hpp", "left & (is_target | !crossed_before[j])", "left",
                             "others that crossed are looked at"),
     "plain_first_within_tolerance": ("locator.hpp", "further = redo.improve(step.h, guess, before);", "",
                                      "a step within the tolerance given is improved"),
@@ -151,6 +151,8 @@ MUTATIONS = {
                  "with sub_samples, turns are looked at"),
     "turns_on_the_cubic": ("step_scan.hpp", "const bool shortens = is_adaptive<Method> &&",
                            "const bool shortens = false &&", "adaptive steps end where a function turns"),
+    "far_turns": ("step_scan.hpp", "if (side[k] * value > R(far_turn) * moves) continue;", "",
+                  "turns far from zero end no step"),
     "no_samples": ("step_scan.hpp", "while (at->points < sides.args.sub_samples)", "while (at->points < 1)",
                    "points inside the step are looked at"),
 }

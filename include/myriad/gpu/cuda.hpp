@@ -58,6 +58,9 @@ __device__ __forceinline__ unsigned largest_of_warp(lane_mask of, unsigned value
 }
 #endif
 
+/// Prefetches memory that is soon read into the nearest cache.
+__device__ __forceinline__ void prefetch(const void* where) { asm volatile("prefetch.global.L1 [%0];" ::"l"(where)); }
+
 // Functions of numbers. 1 / x and 1 / sqrt(x) to about 2^-20 in double precision; in single precision within an ulp
 // or two; subnormal numbers are zero, but for the root and the logarithm of any number.
 #define MYRIAD_APPROXIMATION(real, name, instruction, kind)  \

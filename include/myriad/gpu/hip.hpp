@@ -122,6 +122,8 @@ __device__ __forceinline__ T shuffle_down(lane_mask, T value, int distance) {
     return of_lane(value, lane + distance < warp_size ? lane + distance : lane);
 }
 
+__device__ __forceinline__ void prefetch(const void* where) { __builtin_prefetch(where); }
+
 __device__ __forceinline__ double approximate_reciprocal(double x) { return __builtin_amdgcn_rcp(x); }
 __device__ __forceinline__ float approximate_reciprocal(float x) { return __builtin_amdgcn_rcpf(x); }
 __device__ __forceinline__ double approximate_inverse_root(double x) { return __builtin_amdgcn_rsq(x); }

@@ -39,4 +39,12 @@ near = my.solve(mackey_glass, {tau: [0.97 * critical, 1.03 * critical], beta: 0.
 swing = np.ptp(near["x_sample"], axis=1)
 # end of snippet
 assert swing[0] < 1e-3 < 0.05 < swing[1], swing
+
+# snippet: exponents
+with_tangent = my.with_tangents(mackey_glass, transient_phases=100)
+run = my.solve(with_tangent, {tau: [12, 17, 23], beta: 0.2, gamma: 0.1, n: 10}, time=(0, np.inf), phases=1500,
+               phase_length=10, events={"event_1": dict(stop_after=0)}, rtol=1e-7, atol=1e-7)
+largest = my.exponents(run)[:, 0]  # a cycle: 0; chaos: 0.006 and 0.009
+# end of snippet
+assert abs(largest[0]) < 1e-4 and np.all(largest[1:] > 0.004), largest
 plt.close("all")

@@ -36,6 +36,17 @@ of_subjects = my.solve(drug.with_doses(records), {**records.sweep, absorption: 1
                        start={gut: 0, blood: 0}, time=records.time)
 # end of snippet
 
+# snippet: steady
+weight = my.accessory("weight")
+of_weight = my.model({gut: -absorption * gut, blood: absorption * gut - elimination * 70 / weight * blood},
+                     name="drug_of_weight")
+visits = {"id": [1, 1, 1], "time": [0, 6, 12], "amt": [100, 100, "."], "ss": [1, 0, 0], "ii": [8, 0, 0],
+          "wt": [70, 70, 75], "dv": [".", ".", 88.1]}
+at_visits = my.dose_table(visits, gut, over_time={weight: "wt"})
+settled = my.solve(of_weight.with_doses(at_visits), {**at_visits.sweep, absorption: 1.0, elimination: 0.2},
+                   start={gut: 0, blood: 0}, time=at_visits.time)
+# end of snippet
+
 
 def amount_in_blood(t, times, doses):
     """By Bateman's function, of doses at some times."""
@@ -57,3 +68,5 @@ np.testing.assert_allclose(run[blood], 10 / 0.2 * (1 - np.exp(-0.4)) * np.exp(-0
 expected = [amount_in_blood(np.array([end]), times, amounts)[0] for end, times, amounts in
             ((30, [0, 24], [100, 50]), (4, [0], [80]))]
 np.testing.assert_allclose(of_subjects[blood], expected, rtol=1e-5)
+expected = amount_in_blood(np.array([12.0]), [*(-8 * np.arange(100)), 6], np.full(101, 100))
+np.testing.assert_allclose(settled[blood], expected, rtol=1e-5)  # the weight changes at the end alone

@@ -3,6 +3,7 @@
 rejection and by sbi. Packages that are not installed are left out."""
 
 import importlib.util
+# snippet: model
 import time
 
 import numpy as np
@@ -10,7 +11,6 @@ from scipy import stats
 
 import myriad_ode as my
 
-# snippet: model
 susceptible, infected = my.states("susceptible infected")
 contact, recovery = rates = my.parameters("contact recovery")
 pupils = 763

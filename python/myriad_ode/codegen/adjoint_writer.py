@@ -27,7 +27,7 @@ def no_adjoint(why: str) -> Error:
 
 
 class _Writer(Writer):
-    """Writes the functions that kernel/stepper/transposed_step.hpp names. Weights of a product with a transposed
+    """Writes the functions that kernel/adjoint/transposed_step.hpp names. Weights of a product with a transposed
     derivative are v, the direction of a derivative along the state u, and along time tau."""
 
     def __init__(self, model: Model) -> None:

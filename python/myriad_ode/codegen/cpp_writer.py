@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from .._core import factor_entries
@@ -193,6 +193,17 @@ class Writer:
                    f"MYRIAD_FUNCTION static int delayed_state({which}) {{",
                    *("    " + line for line in self.by_delay([(one.name, [f"return {one.state};"]) for one in delays])),
                    "}"]]
+        slopes = [one.name for one in delays if one.is_slope]
+        if slopes:
+            every = len(slopes) == len(delays)
+            those = "true" if every else " || ".join(f"{n.number} == {name}" for name in slopes)
+            blocks.append(["/// Whether it is the slope that the state had.",
+                           f"MYRIAD_FUNCTION static bool is_delayed_slope(int{'' if every else ' ' + n.number}) {{",
+                           *wrap(f"return {those};", 4), "}"])
+        first: dict[tuple[int, bool], str] = {}
+        of_lag = {one.name: first.setdefault((id(one.lag), one.is_slope), one.name) for one in delays}
+        if len(first) < len(delays):
+            blocks.append(self.same_lag(of_lag))
         is_constant = all(one.is_constant for one in delays)
         blocks.append(self.of_past("/// How long ago it was.", "lag", [(one.name, one.lag) for one in delays],
                                    "p" if is_constant else "typ"))
@@ -204,6 +215,19 @@ class Writer:
             blocks.append(["/// Others had their initial value.",
                            f"MYRIAD_FUNCTION static bool has_history(int {n.number}) {{", *named, "}"])
         return blocks
+
+    def same_lag(self, first: Mapping[str, str]) -> list[str]:
+        """The function that gives the first delayed value with the lag of each, from their names."""
+        n, lines = self.names, []
+        others = {one: [name for name, its in first.items() if its == one != name] for one in first.values()}
+        for one, several in others.items():
+            if several:
+                lines.append(f"if ({' || '.join(f'{n.number} == {name}' for name in several)}) return {one};")
+        every = len(others) == 1
+        lines = [f"return {next(iter(others))};"] if every else [*lines, f"return {n.number};"]
+        return ["/// The first delayed value that is as long ago.",
+                f"MYRIAD_FUNCTION static int same_lag(int{'' if every else ' ' + n.number}) {{",
+                *(wrapped for line in lines for wrapped in wrap(line, 4)), "}"]
 
     def by_delay(self, cases: Sequence[tuple[str, list[str]]]) -> list[str]:
         """Statements of several delayed values, the last for all others; those that are equal once."""
@@ -416,7 +440,9 @@ class Writer:
             return self.done(one.do)
         delay = [] if one.delay is None else [one.delay]
         body = Body([*delay, *one.values], n, self.in_hook, scalar=True)
-        values = [f"{n.R}({body.text(v)})" for v in one.values] + [f"{n.R}(0)"] * (queue.values - len(one.values))
+        kept = f"std::remove_cvref_t<decltype({n.lane}.accessory[0])>"  # which has derivatives where values have
+        values = [f"{kept}({body.text(v)})" for v in one.values] + [f"{kept}({n.R}(0))"] * (
+            queue.values - len(one.values))
         arguments = [n.lane, str(self.model.triggers.index(one)), f"{n.lane}.t"]
         arguments[2:] = [f"{arguments[2]} + {body.text(one.delay)}"] if delay else arguments[2:]
         arguments += [f"{{{', '.join(values)}}}"] if values else []

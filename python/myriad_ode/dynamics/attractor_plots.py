@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,13 +22,22 @@ if TYPE_CHECKING:
 
 def legends(found: Any, across: str, up: str) -> dict[int, str]:
     """What the legend says of each attractor: its name, its place too if another has the name, and its share."""
-    names = [one.name for one in found]
+    names = told_apart([one.name for one in found], lambda i, states: found[i].place(states),
+                       [[across, up], *([state] for one in found for state in one.points)])
+    return {i: f"{name}\n{100 * found[i].share:.3g} %" for i, name in enumerate(names)}
 
-    def place(one: Any) -> str:
-        shown = [one.place([state]) for state in (across, up) if state in one.points]
-        return "\n" + ", ".join(shown) if names.count(one.name) > 1 else ""
 
-    return {i: f"{one.name}{place(one)}\n{100 * one.share:.3g} %" for i, one in enumerate(found)}
+def told_apart(names: Sequence[str], place: Callable[[int, list[str]], str], several: Sequence[list[str]]) -> list[str]:
+    """Names, with a line below those that are alike of where they are: in the first of several sets of states that
+    tells some of them apart, and in the next ones too as long as any are alike."""
+    made, shown = list(names), list[str]()
+    for states in several:
+        with_these = [*shown, *(state for state in states if state not in shown)]
+        alike = {name for name in made if made.count(name) > 1}
+        new = [f"{names[i]}\n{place(i, with_these)}" if name in alike else name for i, name in enumerate(made)]
+        if len({*new}) > len({*made}):
+            made, shown = new, with_these
+    return made
 
 
 def _pair(found: Any, values: Mapping[str, Array], x: Component | None, y: Component | None) -> tuple[str, str, bool]:
@@ -87,16 +97,38 @@ def _scattered(axes: Any, x: Array, y: Array, labels: Any, names: Mapping[int, s
     legend(axes, markerscale=2)
 
 
+def _kinds(found: Sequence[str]) -> str:
+    """What an attractor is at all values of a parameter, with a period if that is always the same."""
+    kinds = list(dict.fromkeys(kind for kind in found if kind))
+    if len(kinds) > 1:
+        kinds = list(dict.fromkeys(re.sub(" of period [^ ]+", "", kind) for kind in kinds))
+    return f"{', '.join(kinds[:2])}{' ...' if len(kinds) > 2 else ''}"
+
+
+def _most_company(found: Any, number: int) -> int:
+    """The place in the middle of those at which an attractor is with most others."""
+    there = [i for i, of in enumerate(found.numbers) if number in of]
+    most = max(len(found.numbers[i]) for i in there)
+    with_most = [i for i in there if len(found.numbers[i]) == most]
+    return with_most[len(with_most) // 2]
+
+
 def shares(found: Any, axes: Axes | None, style: dict[str, Any]) -> Any:
     """Shares of attractors over a parameter, one above the other."""
     count = found.shares.shape[1]
     if not count:
         raise Error(f"there is no attractor at any value of {found.parameter}, and so no share to show")
     axes = axes_of(axes, figsize=(7, 3.6))
-    names = []
-    for number in range(count):
-        kinds = list(dict.fromkeys(kind.partition(" of period")[0] for kind in found.kinds(number) if kind))
-        names.append(f"{number}: {', '.join(kinds[:2])}{' ...' if len(kinds) > 2 else ''}")
+    where = [_most_company(found, number) for number in range(count)]
+
+    def place(number: int, states: list[str]) -> str:
+        at = where[number]
+        shown = found[at][found.numbers[at].index(number)].place(states)
+        return f"{shown} at {found.parameter} = {found.values[at]:.4g}" if shown else ""
+
+    names = told_apart([_kinds(found.kinds(number)) for number in range(count)], place,
+                       [[state] for at in found for one in at for state in one.points])
+    names = [f"{number}: {name}" for number, name in enumerate(names)]
     usual = {"labels": names, "colors": [colours[i] if i < len(colours) else "0.5" for i in range(count)],
              "linewidth": 0}
     axes.stackplot(found.values, 100 * found.shares.T, **{**usual, **style})

@@ -14,8 +14,9 @@ from ..models.recorded import RecordedModel
 from ..results.exponents import exponents
 from ..symbolic.node import symbols_of
 from .clusters import lags
+from .equations import Equations
 from .orbits import samples_of_phase
-from .steady_states import Equations, SteadyState
+from .steady_states import SteadyState, equations_of, steady_state_at
 
 if TYPE_CHECKING:
     from ..symbolic.types import Array
@@ -37,13 +38,13 @@ def returns_of(points: Array, tolerance: float) -> int:
     return 0
 
 
-def equations_of(motion: Motion) -> Equations | None:
+def equations_of_flow(motion: Motion) -> Equations | None:
     """The equations of a flow, where steady states can be found."""
     model = motion.model
     if motion.is_map or not isinstance(model, RecordedModel) or model.mass_matrix is not None or any(
             symbol.value[0] in kinds.accessories for symbol in symbols_of(model.equations.values())):
         return None
-    return Equations(motion.model, motion.values)
+    return equations_of(motion.model, motion.values)
 
 
 def steady_state_near(equations: Equations, end: Mapping[str, Any], reach: Array) -> SteadyState | None:
@@ -53,7 +54,7 @@ def steady_state_near(equations: Equations, end: Mapping[str, Any], reach: Array
     found, arrived = equations.newton(state[None], 100, scale)
     if not arrived[0] or (np.abs(found[0] - state) > reach).any():
         return None
-    return equations.steady_state(found[0], scale)
+    return steady_state_at(equations, found[0], scale)
 
 
 class Cycle(NamedTuple):

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from .clusters import Features, PointSet, distances, features_of, grouped, merged, path
-from .kinds import (aperiodic, cycle, cycles_of_flow, equations_of, exponents_of, fixed_point, kinds_by_exponents,
+from .kinds import (aperiodic, cycle, cycles_of_flow, equations_of_flow, exponents_of, fixed_point, kinds_by_exponents,
                     returns_of, steady_state_near)
 from .orbits import Scale, on_host
 
@@ -219,7 +219,7 @@ class Search:
         motion, size = self.motion, float(np.ptp(self.scale(points), axis=0).max())
         if size > self.tolerance:
             return None
-        equations = equations_of(motion)
+        equations = equations_of_flow(motion)
         reach = np.full(len(motion.model.states), np.inf)
         for name, extent in zip(motion.states, self.scale.extent):
             reach[motion.model.states.index(name)] = 5 * self.tolerance * extent

@@ -16,10 +16,8 @@ from ..models.components import Components, name_of
 from ..models.recorded import RecordedModel
 from ..sweeps.inputs import numbers, real
 from ..symbolic import symbols as sym
-from ..symbolic.derivatives import derivatives
-from ..symbolic.evaluate import evaluate
-from ..symbolic.expression import as_number
 from ..symbolic.node import symbols_of
+from .equations import Equations, rounding
 from .orbits import counted
 from .starts import Starts, constant_values, parameter_of
 
@@ -29,9 +27,6 @@ if TYPE_CHECKING:
     from ..symbolic.types import Array, ByComponent
 
 __all__ = ["SteadyState", "steady_states"]
-
-_rounding = 1e-12  # of the scale of a state
-
 
 @dataclass(frozen=True, eq=False)
 class SteadyState:
@@ -75,122 +70,55 @@ def kind_of(eigenvalues: Array, error: Array) -> str:
     return f"{'stable' if left.size else 'unstable'} {'focus' if turns else 'node'}"
 
 
-class Equations:
-    """The right-hand side of a model and its Jacobian at many states, with some parameters, by NumPy."""
-
-    def __init__(self, model: AnyModel, values: Mapping[Any, Any]) -> None:
-        if not isinstance(model, RecordedModel):
-            raise Error("steady states need the model's derivatives, and this model is not recorded in Python: make it "
-                        "by my.model(...)")
-        delays.refuse(model, "steady states", "find those of the model without delays; whether they are stable is "
-                      "another matter")
-        if model.mass_matrix is not None:
-            raise Error("the model has a mass matrix, with which the eigenvalues are others: solve its algebraic "
-                        "equations in the others")
-        self._functions = list(model.equations.values())
-        found = symbols_of(self._functions)
-        if any(symbol is sym.time for symbol in found):
-            raise Error("the equations depend on time, so that there is no steady state: look for cycles, by "
-                        "my.attractors")
-        self.states, self._symbols = model.states, [sym.symbol("state", name) for name in model.states]
-        components = Components(model)
-        given = {parameter_of(components, key): numbers(value, name_of(key)) for key, value in values.items()}
-        given = components.completed(given, np.asarray(0.0))
-        self._known = {}
-        for symbol in found:
-            kind, name = symbol.value
-            if kind != "state" and kind in kinds.valued:
-                if kind in kinds.accessories:
-                    raise Error(f"the equations depend on the accessory {name}, which hooks change: make it a "
-                                "parameter")
-                if given.get(name) is None:
-                    raise Error(f"the value of '{name}' is missing: give it in the sweep")
-                if not np.isfinite(given[name]).all():
-                    raise Error(f"'{name}' is {given[name]}: give a finite number")
-                self._known[symbol] = given[name]
-        self._derivatives = derivatives(self._functions, self._symbols)
-
-    def _at(self, states: Array) -> dict[Any, Any]:
-        return {**self._known, **dict(zip(self._symbols, states.T))}
-
-    def __call__(self, states: Array) -> Array:
-        """The derivatives of states in rows."""
-        found = evaluate(self._functions, self._at(states))
-        return np.stack([np.broadcast_to(np.asarray(one, float), len(states)) for one in found], axis=1)
-
-    def jacobian(self, states: Array) -> Array:
-        """Matrices (rows of `states`, equations, states); by central differences where an equation has a function
-        without a rule, as the lookup in a table."""
-        count, size = states.shape
-        made = np.zeros((count, size, size))
-        if self._derivatives is None:
-            step = 6e-6 * np.maximum(np.abs(states), 1e-3)  # the cube root of the resolution of numbers
-            for i in range(size):
-                off = np.zeros_like(states)
-                off[:, i] = step[:, i]
-                made[:, :, i] = (self(states + off) - self(states - off)) / (2 * step[:, i, None])
-            return made
-        places = [(row, i) for row, of in enumerate(self._derivatives) for i in of]
-        values = evaluate([as_number(self._derivatives[row][i]) for row, i in places], self._at(states))
-        for (row, i), value in zip(places, values):
-            made[:, row, i] = value
-        return made
-
-    def newton(self, states: Array, iterations: int, scale: Array) -> tuple[Array, Array]:
-        """Where Newton's method leads from states in rows, with steps that are halved until the derivatives are
-        smaller; and which of them have arrived: within rounding of themselves, or of the scale of each state."""
-        states = states.astype(float)
-        arrived, active = np.zeros(len(states), bool), np.arange(len(states))
-        for _ in range(iterations):
-            here, f = states[active], self(states[active])
-            step, solves = self._steps(here, f)
-            length, size = np.ones(len(active)), np.linalg.norm(f, axis=1)
-            for _ in range(8):
-                with np.errstate(invalid="ignore", over="ignore"):
-                    worse = ~(np.linalg.norm(self(here - length[:, None] * step), axis=1) <= size)
-                if not worse.any():
-                    break
-                length[worse] /= 2
-            states[active] = here - length[:, None] * step
-            small = np.abs(step) <= 1e-9 * np.abs(here) + _rounding * scale
-            done = small.all(axis=1) & solves
-            arrived[active[done]] = True
-            active = active[~done & np.isfinite(states[active]).all(axis=1)]
-            if not active.size:
-                break
-        return states, arrived
-
-    def _steps(self, states: Array, f: Array) -> tuple[Array, Array]:
-        """Newton's steps, by the pseudoinverse of the Jacobian, and whether they solve its equations, which may have
-        no solution where it is singular."""
-        matrices = self.jacobian(states)
-        well = np.isfinite(matrices).all(axis=(1, 2)) & np.isfinite(f).all(axis=1)
-        steps, solves = np.full_like(states, np.nan), np.zeros(len(states), bool)
-        rows = _largest(matrices[well], 2)  # equations and states have units, which must make no difference
-        columns = _largest(matrices[well] / rows, 1)
-        inverse = np.linalg.pinv(matrices[well] / rows / columns)
-        steps[well] = np.einsum("nij,nj->ni", inverse, f[well] / rows[:, :, 0]) / columns[:, 0]
-        left = np.einsum("nij,nj->ni", matrices[well], steps[well]) - f[well]
-        solves[well] = np.abs(left).max(axis=1) <= 1e-6 * np.abs(f[well]).max(axis=1)
-        return steps, solves
-
-    def steady_state(self, state: Array, scale: Array) -> SteadyState:
-        """What a state is at which nothing changes. Where Newton's method comes to it slowly, an eigenvalue is zero: it
-        is known no closer than it changes in another step, or within the rounding of a double root."""
-        step, _ = self._steps(state[None], self(state[None]))
-        matrix, further = self.jacobian(np.stack([state, state * (1 + 1.5e-8) - step[0]]))
-        if not np.isfinite(further).all():
-            further = matrix
-        eigenvalues, others = (_sorted(np.linalg.eigvals(of)) for of in (matrix, further))
-        return SteadyState(dict(zip(self.states, state.tolist())), eigenvalues, matrix,
-                           kind_of(eigenvalues, 3 * np.abs(eigenvalues.real - others.real)),
-                           dict(zip(self.states, (_rounding * scale).tolist())))
+def equations_of(model: AnyModel, values: Mapping[Any, Any]) -> Equations:
+    """The equations of a model with some parameters, which do not depend on time."""
+    refuse_unknown_equations(model)
+    assert isinstance(model, RecordedModel)  # as others are refused
+    found = symbols_of(list(model.equations.values()))
+    if any(symbol is sym.time for symbol in found):
+        raise Error("the equations depend on time, so that there is no steady state: look for cycles, by "
+                    "my.attractors")
+    components = Components(model)
+    given = {parameter_of(components, key): numbers(value, name_of(key)) for key, value in values.items()}
+    given = components.completed(given, np.asarray(0.0))
+    known = {}
+    for symbol in found:
+        kind, name = symbol.value
+        if kind != "state" and kind in kinds.valued:
+            if kind in kinds.accessories:
+                raise Error(f"the equations depend on the accessory {name}, which hooks change: make it a "
+                            "parameter")
+            if given.get(name) is None:
+                raise Error(f"the value of '{name}' is missing: give it in the sweep")
+            if not np.isfinite(given[name]).all():
+                raise Error(f"'{name}' is {given[name]}: give a finite number")
+            known[symbol] = given[name]
+    return Equations(model, known)
 
 
-def _largest(matrices: Array, axis: int) -> Array:
-    """The largest magnitude along an axis, 1 where all are zero."""
-    found = np.abs(matrices).max(axis=axis, keepdims=True)
-    return np.where(found > 0, found, 1.0)
+def refuse_unknown_equations(model: AnyModel) -> None:
+    """Refuses models of whose equations nothing is known, or too little."""
+    if not isinstance(model, RecordedModel):
+        raise Error("steady states need the model's derivatives, and this model is not recorded in Python: make it "
+                    "by my.model(...)")
+    delays.refuse(model, "steady states", "find those of the model without delays; whether they are stable is "
+                  "another matter")
+    if model.mass_matrix is not None:
+        raise Error("the model has a mass matrix, with which the eigenvalues are others: solve its algebraic "
+                    "equations in the others")
+
+
+def steady_state_at(equations: Equations, state: Array, scale: Array) -> SteadyState:
+    """What a state is at which nothing changes. Where Newton's method comes to it slowly, an eigenvalue is zero: it
+    is known no closer than it changes in another step, or within the rounding of a double root."""
+    step, _ = equations.steps(state[None])
+    matrix, further = equations.jacobian(np.stack([state, state * (1 + 1.5e-8) - step[0]]))
+    if not np.isfinite(further).all():
+        further = matrix
+    eigenvalues, others = (_sorted(np.linalg.eigvals(of)) for of in (matrix, further))
+    return SteadyState(dict(zip(equations.states, state.tolist())), eigenvalues, matrix,
+                       kind_of(eigenvalues, 3 * np.abs(eigenvalues.real - others.real)),
+                       dict(zip(equations.states, (rounding * scale).tolist())))
 
 
 def _sorted(eigenvalues: Array) -> Array:
@@ -216,7 +144,7 @@ def steady_states(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, 
     Raises `Error` where no start leads to a steady state."""
     if not real(tolerance, "tolerance") > 0:
         raise Error(f"tolerance is {tolerance}: give a positive number, as 1e-6")
-    equations = Equations(model, constant_values(sweep, "a call for each value"))
+    equations = equations_of(model, constant_values(sweep, "a call for each value"))
     starts = Starts(Components(model), start, draws, seed)
     rows = np.stack([starts.values[name] for name in model.states], axis=1)
     scale = np.abs(rows).max(axis=0)
@@ -231,4 +159,4 @@ def steady_states(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, 
     for state in found:
         if not any((np.abs(state - other) <= apart).all() for other in kept):
             kept.append(state)
-    return [equations.steady_state(state + 0.0, scale) for state in kept]
+    return [steady_state_at(equations, state + 0.0, scale) for state in kept]

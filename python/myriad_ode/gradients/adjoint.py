@@ -176,6 +176,8 @@ def _checked(model: AnyModel, by: Sequence[str]) -> Model:
     delays.refuse(model, "derivatives")
     if model.mass_matrix is not None:
         raise no_adjoint("the model has a mass matrix")
+    if model.located_switches:
+        raise no_adjoint("its switches are located, by modes that the equations read")
     if model.triggers or model.queue is not None:
         by_events = with_events(model)
         if by_events is None:

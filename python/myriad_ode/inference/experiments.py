@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..base.data_table import DataTable, is_missing, name_in
 from ..base.errors import Error
 from ..models.components import by_component, name_of
 from ..models.dose_table import DoseTable
@@ -77,9 +78,10 @@ def experiments_from_table(table: Any, *, id: str = "id", t: str = "t", value: s
                            sweep: Mapping[Any, str] | None = None, start: Mapping[Any, str] | None = None,
                            sigma: str | None = None, begin: float | None = None,
                            limits: Any = None) -> list[Experiment]:
-    """Experiments for `my.fit` from a long table, a row for each value: a data frame of pandas or polars, or a dict of
-    columns. Or from a table of doses, `my.dose_table(...)`, of whose observations `of` says what they are: each subject
-    is an experiment with its own doses, that of a model with these doses; of the other arguments it has `limits`.
+    """Experiments for `my.fit` from a long table, a row for each value: a data frame of pandas or polars, a dict of
+    columns, or the path of a CSV file. Or from a table of doses, `my.dose_table(...)`, of whose observations `of` says
+    what they are: each subject is an experiment with its own doses, that of a model with these doses; of the other
+    arguments it has `limits`.
 
     id           the column that tells experiments apart, whose cells are their names
     t, value     the columns of times, in any order, and of values; rows without a value are left out
@@ -93,7 +95,7 @@ def experiments_from_table(table: Any, *, id: str = "id", t: str = "t", value: s
     Raises `Error` with the column, and the row or experiment, of what is wrong."""
     if isinstance(table, DoseTable):
         return _of_subjects(table, of, limits)
-    columns = _Table(table)
+    columns = DataTable(table, "the table")
     ids = columns.cells(id, "id=")
     times, values = columns.numbers(t, "t="), columns.numbers(value, "value=")
     deviations = None if sigma is None else columns.numbers(sigma, "sigma=")
@@ -106,30 +108,28 @@ def experiments_from_table(table: Any, *, id: str = "id", t: str = "t", value: s
                   for argument, given in (("sweep", sweep), ("start", start))}
     of_experiments: dict[str, list[int]] = {}
     for row, one in enumerate(ids):
-        if _is_missing(one):
-            raise Error(f"row {row + 1} of the table has nothing in column '{id}': every row needs an experiment")
-        of_experiments.setdefault(_text(one), []).append(row)
+        if is_missing(one):
+            raise Error(f"{columns.row(row)} has nothing in the column '{id}': every row needs an experiment")
+        of_experiments.setdefault(name_in(one), []).append(row)
     found = []
     for name, rows in of_experiments.items():
         measured = [row for row in rows if not np.isnan(values[row])]
         if not measured:
             raise Error(f"experiment '{name}' has no values in column '{value}': leave its rows out")
         for row in measured:
-            if _is_missing(quantities[row]):
-                raise Error(f"row {row + 1} of the table has nothing in column '{quantity}': name what was measured")
-        names = list(dict.fromkeys(_text(quantities[row]) for row in measured))
+            if is_missing(quantities[row]):
+                raise Error(f"{columns.row(row)} has nothing in the column '{quantity}': name what was measured")
+        names = list(dict.fromkeys(name_in(quantities[row]) for row in measured))
         data: dict[str, Array] = {"t": times[measured]}
         spread: dict[str, Array] = {}
         for one in names:
-            there = np.array([_text(quantities[row]) == one for row in measured])
+            there = np.array([name_in(quantities[row]) == one for row in measured])
             data[one] = np.where(there, values[measured], np.nan)
             if deviations is not None:
                 spread[one] = np.where(there, deviations[measured], 1.0)
         own = {argument: {key: _one_value(cells[rows], name, argument, key) for key, cells in given.items()}
                for argument, given in conditions.items()}
         found.append(Experiment(data, name, own["sweep"], own["start"], begin, spread or None, limits))
-    if not found:
-        raise Error("the table has no rows: give one for each value")
     return found
 
 
@@ -138,12 +138,12 @@ def _of_subjects(records: DoseTable, of: Component | None, limits: Any) -> list[
     if of is None:
         raise Error("the observations of a table of doses have no name: give of=x if they are values of x")
     found = []
-    for i, name in enumerate(records.ids):
+    for i, name in enumerate(records.names):
         there = ~np.isnan(records.observed[i])
         if there.any():
             data = {"t": records.observed_times[i][there], name_of(of): records.observed[i][there]}
             own = {key: float(values[i]) for key, values in records.sweep.items()}
-            found.append(Experiment(data, _text(name), own, None, float(records.time[0][i]), None, limits))
+            found.append(Experiment(data, name_in(name), own, None, float(records.time[0][i]), None, limits))
     if not found:
         raise Error("the table of doses has no observations: give them in a column dv")
     return found
@@ -157,41 +157,3 @@ def _one_value(cells: Array, experiment: str, argument: str, component: str) -> 
         raise Error(f"experiment '{experiment}' has {has} in the column for {argument}= of '{component}': give one in "
                     "an experiment")
     return float(there[0])
-
-
-def _is_missing(cell: Any) -> bool:
-    return cell is None or isinstance(cell, (float, np.floating)) and np.isnan(cell) or type(cell).__name__ == "NAType"
-
-
-def _text(cell: Any) -> str:
-    """A cell as a name: that of 3.0, which columns with gaps have in the place of 3, is "3"."""
-    return str(int(cell)) if isinstance(cell, (float, np.floating)) and float(cell).is_integer() else str(cell)
-
-
-class _Table:
-    """The columns of a table of any kind."""
-
-    def __init__(self, table: Any) -> None:
-        names = getattr(table, "columns", None)
-        if names is None and not isinstance(table, Mapping):
-            raise Error(f"the table is a {type(table).__name__}: give a data frame of pandas or polars, or a dict of "
-                        "columns")
-        self._table, self.names = table, [str(name) for name in (table if names is None else names)]
-
-    def cells(self, column: str, argument: str, otherwise: str = "") -> list[Any]:
-        """The cells of a column that an argument names; what else the argument's user can do is `otherwise`."""
-        if column not in self.names:
-            raise Error(f"the table has no column '{column}' for {argument}, but {', '.join(self.names)}: name the "
-                        f"right one{otherwise}")
-        return list(self._table[column])
-
-    def numbers(self, column: str, argument: str) -> Array:
-        """The numbers of a column, NaN where a cell is empty."""
-        found = []
-        for row, cell in enumerate(self.cells(column, argument)):
-            try:
-                found.append(np.nan if _is_missing(cell) or cell == "" else float(cell))
-            except (TypeError, ValueError):
-                raise Error(f"row {row + 1} of the table has {cell!r} in column '{column}': give a number, or nothing"
-                            ) from None
-        return np.array(found)

@@ -12,7 +12,6 @@ from ..base.errors import Error
 from ..base.statuses import status_names
 from ..gradients.adjoint import Adjoint
 from ..gradients.forward import forward_of, refuse_chosen, tolerances
-from ..models import delays
 from ..models.components import Components, by_component
 from ..models.noise import refuse_derivatives
 from ..sweeps.inputs import by_name, real
@@ -37,7 +36,6 @@ class LeastSquares(Objective):
                  start: ByComponent | None, begin: float, sigma: Any, options: Mapping[str, Any],
                  adjoint: bool = False) -> None:
         refuse_derivatives(model, "fits")
-        delays.refuse(model, "fits", "minimise a sum of squares of runs by an optimiser that takes no derivatives")
         self.model = model
         self._components = components = Components(model)
         super().__init__([Free(components.component(name), bounds) for name, bounds in by_component(

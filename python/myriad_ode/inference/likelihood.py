@@ -12,7 +12,6 @@ import numpy as np
 
 from ..base.errors import Error
 from ..gradients.forward import forward_of, refuse_chosen, tolerances
-from ..models import delays
 from ..models.components import Components, by_component, listed, unknown
 from ..models.noise import refuse_derivatives
 from ..sweeps.inputs import by_name, real
@@ -80,7 +79,6 @@ class Likelihood(Objective):
                  sweep: ByComponent | None, start: ByComponent | None, begin: float, sigma: Any, limits: Any,
                  priors: ByComponent | None, options: Mapping[str, Any]) -> None:
         refuse_derivatives(model, "fits")
-        delays.refuse(model, "fits", "minimise the loss of runs by an optimiser that takes no derivatives")
         refuse_chosen(options, ("samples", "record", "phases", "size", "time"), "a fit")
         self.model = model
         self._components = Components(model)

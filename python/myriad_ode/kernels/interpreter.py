@@ -15,6 +15,8 @@ from ..codegen.jacobian import first_sparse, is_autonomous, jacobian_of, pattern
 from ..codegen.tape_writer import Writer, _refuse, lengths_of, methods
 from ..models.methods import stiff
 from ..models.recorded import RecordedModel
+from ..models.sensitivities import WithSensitivities
+from ..models.written_sensitivities import written_out
 from ..symbolic import symbols as sym
 from ..symbolic.expression import constant
 from ..symbolic.functions import fma, where
@@ -32,6 +34,11 @@ if TYPE_CHECKING:
 def library(model: AnyModel, components: Components, method: str) -> _core.Library:
     """The interpreter of the core with the tape of a traced model. Raises `Error` if the model or the method is beyond
     it."""
+    if isinstance(model, WithSensitivities):
+        written = written_out(model)
+        if isinstance(written, str):
+            raise _refuse(written)
+        model = written
     if not isinstance(model, RecordedModel):
         raise _refuse(model.not_interpreted)
     if model.noise is not None:

@@ -41,6 +41,7 @@ class AnyModel(ComponentNames):
     generate: Sequence[tuple[Any, Any]] = ()
     triggers: Sequence[Any] = ()
     edges: Sequence[Any] = ()  # of conditions of triggers
+    summaries: Sequence[Any] = ()  # extrema and integrals over phases
     noise: Any = None  # a `Noise`
     has_noise: bool | None = False  # None where only a compiler knows
     delays: Sequence[Any] | None = ()  # a `Delay` each; None where only a compiler knows
@@ -49,11 +50,16 @@ class AnyModel(ComponentNames):
     jumps_to_miss: Sequence[str] = ()  # where equations and events jump and no step ends
     shared_values: Mapping[str, float] = {}  # of shared values that the model itself has
     hidden: frozenset[str] = frozenset()  # accessories that no user has named
+    located_switches: Sequence[str] = ()  # accessories that stand for what jumped in the equations
+
+    has_doses = False  # besides what the model itself does, so that time goes forwards
+    has_table = False  # of doses, so that `subject` is the number of a record
 
     # Of a model from a file
     defaults: Mapping[str, Any] = {}  # further values of components that need not be given, also as expressions
     is_from_a_file = False
     aliases: Mapping[str, str] = {}  # components by other names
+    called: Mapping[str, str] = {}  # what results call components that have another name in C++
     outputs: Mapping[str, Any] = {}  # what a run computes from its results, as expressions
     past_outputs: Mapping[str, Any] = {}  # those that read values of the past
     history_of_outputs: Mapping[str, Any] = {}  # what these read from before the begin, by state, as expressions
@@ -64,6 +70,7 @@ class AnyModel(ComponentNames):
 
     # Of a model that is made of another
     free: Sequence[str] = ()  # components that it has derivatives by
+    has_neighbours = False  # whether it follows neighbouring solutions
     not_interpreted = ""  # why it cannot be interpreted, whatever is in it
 
     @property

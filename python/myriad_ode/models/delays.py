@@ -10,7 +10,7 @@ from ..base.errors import Error, at, users_line
 from ..symbolic import symbols as sym
 from ..symbolic.delays import pasts_of
 from ..symbolic.node import symbols_of, text
-from .methods import default, stochastic
+from .methods import default, fixed_step, stochastic
 
 if TYPE_CHECKING:
     from ..symbolic.types import ByComponent
@@ -19,21 +19,23 @@ if TYPE_CHECKING:
 
 
 class Delay(NamedTuple):
-    """A delayed value: its name in C++, its symbol, and of that the name of the state, the lag, and whether the lag is
-    constant in a phase."""
+    """A delayed value: its name in C++, its symbol, and of that the name of the state, the lag, whether the lag is
+    constant in a phase, and whether it is the slope of the state."""
 
     name: str
     symbol: Any
     state: str
     lag: Any
     is_constant: bool
+    is_slope: bool
 
 
 def delays_of(symbols: Sequence[Any]) -> list[Delay]:
     """Delayed values of a model from their symbols, one state after the other; without names."""
     states = list(dict.fromkeys(symbol.value[1].state for symbol in symbols))
-    return [Delay("", symbol, state.value[1], symbol.value[1].lag, symbol.value[1].has_constant_lag)
-            for state in states for symbol in symbols if symbol.value[1].state is state]
+    pasts = [(symbol, symbol.value[1]) for symbol in symbols]
+    return [Delay("", symbol, state.value[1], past.lag, past.has_constant_lag, past.is_slope)
+            for state in states for symbol, past in pasts if past.state is state]
 
 
 def read_history(reader: Reader, given: ByComponent | None, states: Sequence[Any]) -> dict[Any, Any]:
@@ -56,7 +58,7 @@ def read_history(reader: Reader, given: ByComponent | None, states: Sequence[Any
 
 
 #: What a model with delays has besides what users name.
-own_names = ("delayed", "n_delayed", "delayed_state", "lag", "history", "has_history")
+own_names = ("delayed", "n_delayed", "delayed_state", "is_delayed_slope", "same_lag", "lag", "history", "has_history")
 
 
 def check(model: Any) -> None:
@@ -75,6 +77,10 @@ def check(model: Any) -> None:
     if model.mass_matrix is not None:
         raise Error(f"a model with a mass matrix has no delays yet{line}: divide its "
                     "equations by what stands before their derivatives")
+    units = model.units_of_states
+    if units is not None and (units.threads_per_instance or 1) > 1:
+        raise Error(f"threads_per_instance is {units.threads_per_instance}{line}, and teams of threads take no units "
+                    "with delays yet: leave it out, and one thread integrates an instance")
     _check_lags(model)
 
 
@@ -99,6 +105,17 @@ def refuse(model: AnyModel, what: str, instead: str = "solve it for several valu
         raise Error(f"the model has delays, and {what} of such models are not there yet{at(users_line())}: {instead}")
 
 
+def refuse_derivatives(model: AnyModel, what: str) -> None:
+    """Refuses derivatives by the library's dual numbers of what has none."""
+    if model.delays and model.triggers:
+        raise Error(f"the model has delays and triggers{at(users_line())}, and {what} of such models are not there "
+                    "yet: give events actions of their own, or solve it for several values")
+    slope = next((one for one in model.delays or () if one.is_slope), None)
+    if slope is not None:
+        raise Error(f"the model reads `{text(slope.symbol)}`{at(users_line())}, and {what} of models that read slopes "
+                    "of their past are not there yet: solve it for several values")
+
+
 def refuse_history_steps(model: AnyModel, steps: Any) -> None:
     """Refuses the option for a model that keeps no past."""
     if model.delays is not None and not model.delays and steps != 0:
@@ -106,7 +123,11 @@ def refuse_history_steps(model: AnyModel, steps: Any) -> None:
 
 
 def refuse_method(model: AnyModel, method: str) -> None:
-    """Refuses a method that takes no delays."""
+    """Refuses a method that does not take the model's delays."""
+    if model.delays and model.has_neighbours and method in fixed_step and not all(d.is_constant for d in model.delays):
+        raise Error(f"a lag of the model depends on time or state, and tangents and sensitivities of such models need "
+                    f"steps that end where jumps of the past arrive, which those of {method} do not: give an adaptive "
+                    f"method, such as \"{default}\"")
     if model.delays and method in stochastic:
         raise Error(f"the model has delays, which {method} does not take: give a method for ordinary equations, such "
                     f"as \"{default}\"")

@@ -4,211 +4,207 @@ subject. The columns have the names and meanings that they have in NONMEM's data
 
 from __future__ import annotations
 
-import copy
-import csv
-import os
-from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from ..base.data_table import DataTable, is_missing
 from ..base.errors import Error, at, users_line
 from ..symbolic import symbols as sym
-from ..symbolic.expression import make, to_real
-from ..symbolic.folding import add, constant, multiply
-from ..symbolic.functions import where
-from ..symbolic.table import Table
+from ..symbolic.node import Node
+from ..symbolic.numbers import is_whole
 from .components import name_of
-from .event import Stop
+from .tabled_doses import Dose, TabledCovariates, TabledDoses, first_of_all, halfway, in_steady_state, subject
 
 if TYPE_CHECKING:
     from ..symbolic.types import Array, Component, Path, Written
 
 __all__ = ["dose_table"]
 
-#: The number of an instance's subject, in all tables of a model.
-subject = sym.parameter("subject")
-_Dose = tuple[float, float, float, float]
+#: How much later than its row an observation is that stands below a dose at its time, relative to the record.
+just_after = 1e-12
 _columns = ("id", "time", "amt", "evid", "cmt", "rate", "dur", "ii", "addl", "ss", "dv", "mdv")
 
 
-class TabledDoses:
-    """What one state gets by a table. Its rows are time, amount, and rate of infusions from then on; those of one
-    subject follow each other."""
-
-    def __init__(self, name: str, of_subjects: list[Array], lag: Any, bioavailability: Any) -> None:
-        self.into, self.lag, self.bioavailability, self.line = name, lag, bioavailability, users_line()
-        lengths = [len(rows) for rows in of_subjects]
-        rows = _padded(np.concatenate(of_subjects), 0.0)
-        self.table = Table(sym.check_name(f"{name}_doses", "a table"), rows)
-        firsts = np.cumsum([0, *lengths])  # the row of each subject's first, and behind it the next one's
-        self.firsts = Table(f"{name}_doses_of", _padded(firsts, firsts[-1]))
-        self.halvings = max(lengths).bit_length()
-        self.rate = sym.accessory(f"{name}_infused")
-        self.is_infusion = bool((rows[:, 2] > 0).any())
-
-    @property
-    def values(self) -> list[Any]:
-        """All expressions of it."""
-        return [self.lag, self.bioavailability, subject]
-
-    def read(self, expression: Callable[[Any, str], Any]) -> TabledDoses:
-        """The same with expressions in place of texts and numbers."""
-        made = copy.copy(self)
-        made.lag = expression(self.lag, "the lag of doses")
-        made.bioavailability = expression(self.bioavailability, "the bioavailability of doses")
-        return made
-
-    def stops(self, target: Any, free_name: Callable[[str], str]) -> list[Stop]:
-        """The stop at which the state gets what is given at once, and the rate of infusions changes."""
-        first, end = self._range
-        row = first + sym.stop_number
-        do = {target: target + multiply(self.bioavailability, self._entry(row, 1))}
-        if self.is_infusion:
-            do[self.rate] = self._entry(row, 2)
-        made = Stop([where(row < end, self._time(row), np.inf)], None, None, free_name(f"{target.value[1]}_dose"), do)
-        made.line = self.line
-        return [made]
-
-    def inflow(self) -> Any:
-        """What infusions add to the derivative of the state."""
-        return self.rate if self.is_infusion else constant(0.0)
-
-    def at_start(self) -> dict[Any, Any]:
-        """What is assigned at the start of a phase: the rate of the infusions that are under way, which the last row
-        until then has. It is found by bisection."""
-        if not self.is_infusion:
-            return {}
-        first, end = self._range
-        row = first - 1.0
-        for step in (2.0 ** k for k in reversed(range(self.halvings))):
-            row = row + where((row + step < end) & (self._time(row + step) <= sym.time), step, 0.0)
-        return {self.rate: where(row < first, 0.0, self._entry(row, 2))}
-
-    @property
-    def _range(self) -> tuple[Any, Any]:
-        """The first row of the subject, and the one behind its last."""
-        return tuple(make("lookup", (to_real(one),), (self.firsts, 0, 1, len(self.firsts)))
-                     for one in (subject, subject + 1.0))
-
-    def _entry(self, row: Any, column: int) -> Any:
-        return make("lookup", (row,), (self.table, column, 3, len(self.table)))
-
-    def _time(self, row: Any) -> Any:
-        return add(self._entry(row, 0), self.lag)
-
-
-def _padded(rows: Array, value: float) -> Array:
-    """As many rows as the next power of two: generated code has the length of a table, but not its values."""
-    missing = (1 << (len(rows) - 1).bit_length()) - len(rows) if len(rows) else 1
-    return np.pad(np.asarray(rows, float), [(0, missing), *[(0, 0)] * (rows.ndim - 1)], constant_values=value)
-
-
 class DoseTable:
-    """Doses by subject. Made by `my.dose_table`; for `model.with_doses`."""
+    """Doses by record: the rows of a subject from its first one on, or from a reset or a steady state. Made by
+    `my.dose_table`; for `model.with_doses`."""
 
-    #: the ids of the subjects, in the order of the instances
+    #: the ids of the records' subjects, in the order of the instances
     ids: list[Any]
-    #: a part of the sweep: values of the parameter `subject`, the number of an instance's subject, counted from 0
+    #: the number of each record's subject, counted from 0
+    of_subject: Array
+    #: a part of the sweep: values of the parameter `subject`, the number of an instance's record, counted from 0
     sweep: dict[Any, Array]
-    #: first and last time of each subject, for `time=`
+    #: begin and end of each record, for `time=`; doses before a steady state come before its first row
     time: tuple[Array, Array]
-    #: by name in small letters, a value for each subject: what other columns have
+    #: the time of each record's first row
+    first: Array
+    #: by name in small letters, a value for each record: what other columns have
     covariates: dict[str, Array]
-    #: times and values of observations, a row for each subject, NaN where it has fewer than others
+    #: times and values of observations, a row for each record, NaN where it has fewer than others
     observed_times: Array
     observed: Array
 
-    def __init__(self, parts: list[TabledDoses], ids: list[Any]) -> None:
-        self.parts, self.ids = parts, ids
-        self.sweep = {subject: np.arange(len(ids), dtype=float)} if parts else {}
+    def __init__(self, parts: Sequence[TabledDoses | TabledCovariates], records: Sequence[_Record]) -> None:
+        self.parts, self.ids = parts, [one.subject for one in records]
+        numbers = {one: i for i, one in enumerate(dict.fromkeys(self.ids))}
+        self.of_subject = np.array([numbers[one] for one in self.ids])
+        self.sweep = {subject: np.arange(len(records), dtype=float)} if parts else {}
+        self.first = np.array([one.first for one in records])
+        self.time = np.array([one.begin for one in records]), np.array([one.end for one in records])
+        most = max(len(one.seen) for one in records)
+        padded = np.array([[*one.seen, *[(np.nan, np.nan, 0)] * (most - len(one.seen))] for one in records], float
+                          ).reshape(len(records), most, 3)
+        self.observed_times, self.observed = padded[..., 0], padded[..., 1]
 
     def __repr__(self) -> str:
-        states = " and ".join(part.into for part in self.parts) or "no state"
-        return f"doses into {states} of {len(self.ids)} subjects"
+        states = " and ".join(part.into for part in self.parts if part.into is not None) or "no state"
+        return f"doses into {states} of {len(set(self.of_subject))} subjects"
+
+    @property
+    def names(self) -> list[str]:
+        """A name of each record: its subject's id, with the time of its first row where a subject has several, and a
+        number where several begin at one time."""
+        made: list[Any] = [f"{one} from {first:g}" if self.ids.count(one) > 1 else one
+                           for one, first in zip(self.ids, self.first)]
+        return [f"{one}, {1 + made[:i].count(one)}" if one in made[:i] else one for i, one in enumerate(made)]
+
+
+def _check_infusions(bioavailability: Written, parts: Iterable[TabledDoses]) -> None:
+    """Refuses a bioavailability of infusions, whose amounts it would change by an unknown time."""
+    is_one = isinstance(bioavailability, (int, float)) and bioavailability == 1
+    if not is_one and any(part.is_infusion for part in parts):
+        raise Error(f"a table with infusions has the bioavailability {bioavailability!r}{at(users_line())}, which "
+                    "would change how long they take: write my.doses for each")
 
 
 def dose_table(data: Mapping[str, Any] | Path, into: Component | Mapping[Any, Component], *, lag: Written = 0.0,
-               bioavailability: Written = 1.0) -> DoseTable:
+               bioavailability: Written = 1.0, over_time: Mapping[Any, str] | None = None,
+               carried: Literal["forward", "backward"] = "forward", steady_after: int = 100) -> DoseTable:
     """Doses for `model.with_doses` from a table: of pandas or polars, a dict of columns, or the path of a CSV file.
 
     A row is a dose, or an observation, of a subject. The columns, in any order and case, with NONMEM's meanings:
 
     id          the subject; each is an instance, in the order in which they come; without it there is one
-    time        in the model's unit; does not decrease within a subject
+    time        in the model's unit; does not decrease within a subject, but at a reset
     amt         the amount, in the unit of the state
-    evid        1 for a dose, 0 for an observation, 2 for neither; by default a row with an amount is a dose
+    evid        1 for a dose, 0 for an observation, 2 for neither, 3 for a reset, 4 for a reset and a dose; by default a
+                row with an amount is a dose
     cmt         which state gets it: a key of `into`; not needed where `into` is one state
     rate, dur   of an infusion: amount by time, or how long it takes; 0 for a dose at once
     addl, ii    so many more doses, at intervals of ii
+    ss          1 for a dose in the steady state of such doses at intervals of ii, which replaces what was before
     dv, mdv     what was observed, unless mdv is 1
 
-    Other columns are covariates, numbers that do not change within a subject. A missing value is empty, "." or NaN.
-    `lag` and `bioavailability` are as in `my.doses`; they hold for all rows.
+    An observation that stands below a dose at its time sees it, one above does not. So its time in `observed_times` is
+    later by 1e-12 of the record's length, or of the time where that is more, which single precision does not resolve:
+    leave out precision="float" there. What addl or a lag brings to the time of an observation comes after it.
+
+    What follows a reset, or begins with a steady state, depends on nothing before it, and is a record of its own: an
+    instance with the same id, which begins with the values of `start=`. Other columns are covariates, numbers that do
+    not change within a subject. A missing value is empty, "." or NaN.
+
+    lag, bioavailability  as in `my.doses`; they hold for all rows
+    over_time     accessories of the model that have the values of columns, `{weight: "WT"}`, which may change; a dose
+                  has the bioavailability of its own row, later ones by lag or addl that of when they come; a lag may
+                  not depend on them
+    carried       whether these hold from their row on, "forward", or up to it from the row before, "backward", as in
+                  NONMEM's own programs; a missing one is the last before it, or else the first
+    steady_after  how many doses are given before a steady state. Where a state has not settled by then, so that more
+                  than about 1e-6 of its change is left, or where the time domain begins after the first of these
+                  doses, the instance ends as "not_finite"
 
     The result has what `solve` needs: `my.solve(model.with_doses(records), {**records.sweep, ...}, time=records.time)`.
-    The sweep has one parameter, `subject`, which may also be an axis of `my.grid`. Doses before the begin of the time
-    domain are not given, and infusions that are under way there go on. Raises `my.Error`, with the number of the row,
-    where a value cannot be read or stands for what is not supported: a steady state (ss), a reset (evid 3 and 4), and
-    rates that parameters decide (below zero).
+    The sweep has one parameter, `subject`, the number of a record, counted from 0 and not its id, which may also be an
+    axis of `my.grid`; with a number that no record has, an instance ends as "not_finite". Doses before the begin of the
+    time domain are not given, and infusions that are under way there go on. Raises `my.Error`, with the number of the
+    row, for what cannot be read or is not supported: sums of steady states (ss 2), constant infusions in a steady
+    state (an amount of 0), and rates that parameters decide (below zero).
     """
-    line, states = users_line(), _states(into)
-    columns = _read(data, line)
-    values = {name: _numbers(name, columns[name], line, "give a number").tolist() for name in _columns
-              if name in columns and name not in ("id", "cmt")}
-    ids = columns.get("id", ["1"] * len(columns["time"]))
-    rows = _Rows(ids, states)
-    for i, subject in enumerate(ids):
-        row = {name: values[name][i] if name in values else np.nan for name in _columns}
-        rows.add(subject, row, columns["cmt"][i] if "cmt" in columns else None,
-                 f"row {i + 1} of the table of doses{at(line)}")
-    parts = [TabledDoses(state, [_rows_of(several) for several in rows.given[state].values()], lag, bioavailability)
-             for state in rows.given if any(rows.given[state].values())]
-    if any(part.is_infusion for part in parts) and not (isinstance(bioavailability, (int, float))
-                                                        and bioavailability == 1):
-        raise Error(f"a table with infusions has the bioavailability {bioavailability!r}{at(line)}, which would change "
-                    "how long they take: write my.doses for each")
-    made = DoseTable(parts, list(rows.begin))
-    made.time = np.array([*rows.begin.values()]), np.array([*rows.end.values()])
-    made.covariates = {name: _constant(name, of_column, ids, line) for name, of_column in columns.items()
-                       if name not in _columns}
-    made.observed_times, made.observed = rows.observed()
+    states, columns = _states(into), DataTable(data, "the table of doses", any_case=True)
+    if not is_whole(steady_after, 5):
+        raise Error(f"steady_after is {steady_after!r}{at(users_line())}: give the number of doses before a steady "
+                    "state, 5 or more")
+    changing = {_accessory(key): str(name).strip().lower() for key, name in (over_time or {}).items()}
+    records, of_row = _records_of(columns, states, int(steady_after))
+    parts: list[Any] = [TabledDoses(state, [one.given[state] for one in records], lag, bioavailability)
+                        for state in dict.fromkeys(states.values()) if any(one.given[state] for one in records)]
+    _check_infusions(bioavailability, parts)
+    if changing:
+        parts.append(TabledCovariates([*changing], _over_time(columns, [*changing.values()], records, of_row, carried),
+                                      carried == "backward"))
+    made = DoseTable(parts, records)
+    made.covariates = {name: _constant(name, columns, records, of_row) for name in columns.names
+                       if name not in (*_columns, *changing.values())}
     return made
 
 
-class _Rows:
-    """What the rows of a table say of each subject, in the order in which subjects come."""
+class _Record:
+    """What the rows of a subject say, from its first one on, or from a reset or a steady state."""
 
-    def __init__(self, ids: list[Any], states: Mapping[Any, str]) -> None:
-        order = dict.fromkeys(ids)
-        self.states = states  #: by key
-        #: begin, end, amount at once and rate of the doses, by state and subject
-        self.given: dict[str, dict[Any, list[_Dose]]] = {state: {one: [] for one in order} for state in states.values()}
-        self.seen: dict[Any, list[tuple[float, float]]] = {one: [] for one in order}
-        self.begin: dict[Any, float] = dict.fromkeys(order, np.inf)
-        self.end: dict[Any, float] = dict.fromkeys(order, -np.inf)
+    def __init__(self, subject: Any, states: Mapping[Any, str]) -> None:
+        self.subject = subject
+        self.given: dict[str, list[Dose]] = {state: [] for state in states.values()}
+        self.seen: list[tuple[float, float, bool]] = []  # times, values, and whether a dose at the time is above
+        self.begin = self.first = np.inf
+        self.end = self.last_given = -np.inf
 
-    def add(self, subject: Any, row: Mapping[str, float], compartment: Any, where_it_is: str) -> None:
+    def add(self, row: Mapping[str, float], evid: int, state: str | None, steady_after: int, where_it_is: str) -> None:
         """Takes a row, or refuses it."""
-        time, last = row["time"], self.end[subject]
-        if _is_missing(subject):
-            raise Error(f"{where_it_is} has no id: give the subject")
-        if not np.isfinite(time):
-            raise Error(f"{where_it_is} has the time {time}: give a finite number")
-        if time < last:
-            raise Error(f"{where_it_is} has the time {time} after {last}: sort the rows of each subject by time")
-        self.begin[subject], self.end[subject] = min(self.begin[subject], time), time
-        if _is_dose(row, where_it_is):
-            self.given[_state_of(compartment, self.states, where_it_is)][subject] += _doses_of(row, where_it_is)
-        elif row["evid"] != 2 and row["mdv"] != 1 and not np.isnan(row["dv"]):
-            self.seen[subject].append((time, row["dv"]))
+        time = row["time"]
+        if time < self.end:
+            raise Error(f"{where_it_is} has the time {time} after {self.end}: sort the rows of each subject by time")
+        self.first, self.end = min(self.first, time), time
+        self.begin = min(self.begin, time)
+        if state is not None:
+            if self.seen and self.seen[-1][0] == time and self.seen[-1][2]:
+                raise Error(f"{where_it_is} is a dose below an observation that has another dose above it, all at the "
+                            f"time {time:g}: give one of the doses a time that differs a little")
+            doses = _doses_of(row, steady_after, where_it_is)
+            self.given[state] += doses
+            self.last_given = time
+            self.begin = min(self.begin, doses[0].begin)
+        elif evid == 0 and row["mdv"] != 1 and not np.isnan(row["dv"]):
+            self.seen.append((time, row["dv"], time == self.last_given))
 
-    def observed(self) -> tuple[Array, Array]:
-        """Times and values of the observations, a row for each subject."""
-        most = max(map(len, self.seen.values()))
-        padded = np.array([[*several, *[(np.nan, np.nan)] * (most - len(several))] for several in self.seen.values()]
-                          ).reshape(len(self.seen), most, 2)
-        return padded[..., 0], padded[..., 1]
+    def finish(self) -> None:
+        """Lets observations that stand below a dose at their time come a little later, so that they see it."""
+        for i, (time, value, is_after) in enumerate(self.seen):
+            if is_after:
+                time += just_after * (max(abs(time), self.end - self.begin) or 1.0)
+            self.seen[i] = time, value, is_after
+        self.end = max([self.end, *(time for time, _, _ in self.seen)])
+
+
+def _records_of(columns: DataTable, states: Mapping[Any, str], steady_after: int) -> tuple[list[_Record], list[int]]:
+    """The records of all subjects, those of each together, and the number of each row's record."""
+    values = {name: columns.numbers(name, cure="give a number").tolist() for name in _columns
+              if name in ("time", "amt") or name in columns and name not in ("id", "cmt")}
+    ids = columns.cells("id") if "id" in columns else ["1"] * columns.length
+    compartments = columns.cells("cmt") if "cmt" in columns else [None] * columns.length
+    of_subject: dict[Any, list[_Record]] = {}
+    rows = []
+    for i, one in enumerate(ids):
+        row, where_it_is = {name: values[name][i] if name in values else np.nan for name in _columns}, columns.row(i)
+        if is_missing(one):
+            raise Error(f"{where_it_is} has no id: give the subject")
+        if not np.isfinite(row["time"]):
+            raise Error(f"{where_it_is} has the time {row['time']}: give a finite number")
+        evid = _evid_of(row, where_it_is)
+        several = of_subject.setdefault(one, [])
+        if not several or evid in (3, 4) or evid == 1 and row["ss"] > 0:
+            if not several or np.isfinite(several[-1].first):
+                several.append(_Record(one, states))
+        state = _state_of(compartments[i], states, where_it_is) if evid in (1, 4) else None
+        several[-1].add(row, evid, state, steady_after, where_it_is)
+        rows.append(several[-1])
+    records = [one for several in of_subject.values() for one in several]
+    for one in records:
+        one.finish()
+    numbers = {id(one): number for number, one in enumerate(records)}
+    return records, [numbers[id(one)] for one in rows]
 
 
 def _states(into: Any) -> dict[Any, str]:
@@ -229,63 +225,21 @@ def _key(given: Any) -> Any:
         return None if given is None else str(given).strip()
 
 
-def _read(data: Any, line: tuple[str, int] | None) -> dict[str, list[Any]]:
-    """The columns of a table, by name in small letters."""
-    if isinstance(data, (str, os.PathLike)):
-        try:
-            with open(data, encoding="utf-8-sig", newline="") as file:
-                read = csv.DictReader(file, skipinitialspace=True)
-                rows = list(read)
-        except OSError as why:
-            raise Error(f"{os.fspath(data)!r} cannot be read{at(line)}: {why.strerror or why}") from None
-        data = {name: [row[name] for row in rows] for name in read.fieldnames or ()}
-    if hasattr(data, "notna"):  # pandas, which has several kinds of missing values
-        data = data.astype(object).where(data.notna(), None)
-    try:
-        columns = [(str(name).strip().lower(), list(data[name])) for name in getattr(data, "columns", data)]
-    except TypeError:
-        raise Error(f"the table of doses is no table{at(line)}: give a data frame, a dict with a list for each column, "
-                    "or the path of a CSV file") from None
-    made, lengths = dict(columns), {len(of_column) for _, of_column in columns}
-    names = ", ".join(name for name, _ in columns) or "none"
-    for name in ("time", "amt"):
-        if name not in made:
-            raise Error(f"the table of doses has no column '{name}'{at(line)}: it has {names}")
-    if len(made) < len(columns):
-        raise Error(f"the table of doses has two columns of one name{at(line)}, {names}, where case does not count: "
-                    "rename one of them")
-    if len(lengths) > 1 or not max(lengths):
-        raise Error(f"the columns of the table of doses have {' or '.join(map(str, sorted(lengths)))} rows{at(line)}: "
-                    "give as many for each, and one or more")
-    return made
-
-
-def _is_missing(given: Any) -> bool:
-    if isinstance(given, str):
-        return given.strip().lower() in ("", ".", "na", "nan")
-    return given is None or isinstance(given, (float, np.floating)) and bool(np.isnan(given))
-
-
-def _numbers(name: str, given: list[Any], line: tuple[str, int] | None, cure: str) -> Array:
-    made = np.empty(len(given))
-    for row, one in enumerate(given):
-        try:
-            made[row] = np.nan if _is_missing(one) else float(one)
-        except (TypeError, ValueError):
-            raise Error(f"row {row + 1} of the table of doses{at(line)} has {one!r} in the column '{name}': {cure}"
-                        ) from None
-    return made
-
-
-def _is_dose(row: Mapping[str, float], where_it_is: str) -> bool:
+def _evid_of(row: Mapping[str, float], where_it_is: str) -> int:
+    """What a row is: 0 an observation, 1 a dose, 2 neither, 3 a reset, 4 a reset and a dose."""
     has_amount = not np.isnan(row["amt"]) and row["amt"] != 0
     evid = row["evid"] if not np.isnan(row["evid"]) else float(has_amount)
-    if evid not in (0, 1, 2):
-        what = ", a reset: give what follows another id" if evid in (3, 4) else ": 0, 1 and 2 are known"
-        raise Error(f"{where_it_is} has evid {evid:g}{what}")
-    if evid == 1 and not 0 < row["amt"] < np.inf:
-        raise Error(f"{where_it_is} is a dose of {row['amt']:g}: give an amount above zero, or evid 0")
-    return evid == 1
+    if evid not in (0, 1, 2, 3, 4):
+        raise Error(f"{where_it_is} has evid {evid:g}: 0 to 4 are known")
+    if row["ss"] > 0 and row["rate"] > 0 and not has_amount:
+        raise Error(f"{where_it_is} is a constant infusion in a steady state, with an amount of 0: give as the amount "
+                    "the rate times ii, which is as much")
+    if evid in (0, 2, 3) and has_amount:
+        raise Error(f"{where_it_is} has evid {evid:g}, which is no dose, and the amount {row['amt']:g}: give evid 1, "
+                    "or 4 with a reset, or no amount")
+    if evid in (1, 4) and not 0 < row["amt"] < np.inf:
+        raise Error(f"{where_it_is} is a dose of {row['amt']:g}: give an amount above zero, or evid 0 and no amount")
+    return int(evid)
 
 
 def _state_of(given: Any, states: Mapping[Any, str], where_it_is: str) -> str:
@@ -297,47 +251,90 @@ def _state_of(given: Any, states: Mapping[Any, str], where_it_is: str) -> str:
     return states[key]
 
 
-def _doses_of(row: Mapping[str, float], where_it_is: str) -> list[_Dose]:
-    """Begin, end, amount at once and rate of the doses of a row."""
-    rate, duration, more, interval = (0.0 if np.isnan(row[name]) else row[name]
-                                      for name in ("rate", "dur", "addl", "ii"))
-    if row["ss"] > 0:
-        raise Error(f"{where_it_is} has ss {row['ss']:g}, a steady state: give the doses before it, as many as it "
-                    "takes")
+def _doses_of(row: Mapping[str, float], steady_after: int, where_it_is: str) -> list[Dose]:
+    """The doses of a row, and those before it where it is one in a steady state."""
+    rate, duration, more, interval, steady = (0.0 if np.isnan(row[name]) else row[name]
+                                              for name in ("rate", "dur", "addl", "ii", "ss"))
+    if steady not in (0, 1):
+        what = (", a sum with the steady state of other doses, which only linear models have: give the doses before it "
+                "as rows" if steady == 2 else ": 0 and 1 are known")
+        raise Error(f"{where_it_is} has ss {steady:g}{what}")
     if rate < 0 or duration < 0:
-        raise Error(f"{where_it_is} has a rate or duration below zero, which a parameter would decide: write it as "
-                    "my.doses(..., rate=) or duration=")
+        raise Error(f"{where_it_is} has the {'rate' if rate < 0 else 'duration'} {min(rate, duration):g}, below zero, "
+                    "which parameters would decide: write it as my.doses(..., rate=) or duration=")
     if np.inf in (rate, duration, interval):
         raise Error(f"{where_it_is} has an infinite rate, dur or ii: give finite numbers, 0 for a dose at once")
     if more < 0 or not more.is_integer():
         raise Error(f"{where_it_is} has addl {more:g}: give the number of further doses, 0 or more")
-    if more > 0 and not interval > 0:
-        raise Error(f"{where_it_is} has addl {more:g} and ii {interval:g}: give the interval of further doses in ii")
+    if (more > 0 or steady) and not interval > 0:
+        what = f"addl {more:g}" if more > 0 else "ss 1"
+        raise Error(f"{where_it_is} has {what} and ii {interval:g}: give the interval of doses in ii")
     if rate > 0 and duration > 0:
         raise Error(f"{where_it_is} has both rate and dur: give one of them")
     length = row["amt"] / rate if rate > 0 else duration
     rate = row["amt"] / length if length > 0 else 0.0
-    begins = [row["time"] + k * interval for k in range(int(more) + 1)]
-    return [(begin, begin + length, 0.0 if length > 0 else row["amt"], rate) for begin in begins]
+    before = steady_after if steady else 0
+    marks = {before: first_of_all, before - before // 2: halfway, 0: in_steady_state} if before else {}
+    return [Dose(begin := row["time"] + k * interval, begin + length, 0.0 if length > 0 else row["amt"], rate,
+                 marks.get(-k, 0.0)) for k in range(-before, int(more) + 1)]
 
 
-def _rows_of(several: list[_Dose]) -> Array:
-    """The rows of a subject: times, amounts, and rates from then on."""
-    infusions = [(begin, end, rate) for begin, end, _, rate in several if rate > 0]
-    happening = sorted([(begin, amount) for begin, _, amount, _ in several] + [(end, 0.0) for _, end, _ in infusions],
-                       key=lambda one: one[0])
-    return np.array([(time, amount, sum(rate for begin, end, rate in infusions if begin <= time < end))
-                     for time, amount in happening]).reshape(-1, 3)
+def _accessory(given: Any) -> Any:
+    """The accessory of a key of over_time=."""
+    if isinstance(given, str):
+        return sym.accessory(given)
+    if not (isinstance(given, Node) and given.op == "symbol" and given.value[0] == "accessory"):
+        raise Error(f"over_time has {given!r}{at(users_line())}, which is no accessory: what changes within an "
+                    "instance is one, as made by my.accessory(\"weight\")")
+    return given
 
 
-def _constant(name: str, given: list[Any], ids: list[Any], line: tuple[str, int] | None) -> Array:
-    """A covariate of each subject."""
-    made: dict[Any, float] = dict.fromkeys(ids, np.nan)
-    for subject, number in zip(ids, _numbers(name, given, line, "give a number, or leave the column out")):
-        if np.isnan(made[subject]):
-            made[subject] = float(number)
-        elif number != made[subject] and not np.isnan(number):
-            raise Error(f"the column '{name}' of the table of doses{at(line)} changes within the subject {subject!r}, "
-                        f"from {made[subject]:g} to {number:g}: leave it out, and interpolate it in the model by "
-                        "my.interpolate")
-    return np.array([*made.values()])
+def _over_time(columns: DataTable, names: Sequence[str], records: Sequence[_Record], of_row: Sequence[int],
+               carried: str) -> list[Array]:
+    """The rows of covariates of each record: times, and values from then on."""
+    if carried not in ("forward", "backward"):
+        raise Error(f"carried is {carried!r}{at(users_line())}: give \"forward\" or \"backward\"")
+    time = columns.numbers("time")
+    cells = np.column_stack([columns.numbers(name, "over_time=", "give a number") for name in names])
+    for one, rows in _by_subject(records, of_row).items():
+        for column, name in enumerate(names):
+            cells[rows, column] = _filled(cells[rows, column],
+                                          f"the subject {one!r} of {columns.called} has nothing in the column '{name}'")
+    made = []
+    for number, record in enumerate(records):
+        is_here = np.array(of_row) == number
+        times, values = time[is_here], cells[is_here]
+        if carried == "backward":  # what holds from a row on is what the next one has
+            times, values = np.array([record.begin - 1.0, *times]), np.concatenate([values, values[-1:]])
+        made.append(np.column_stack([times, values]))
+    return made
+
+
+def _by_subject(records: Sequence[_Record], of_row: Sequence[int]) -> dict[Any, list[int]]:
+    """The numbers of each subject's rows."""
+    found: dict[Any, list[int]] = {}
+    for row, place in enumerate(of_row):
+        found.setdefault(records[place].subject, []).append(row)
+    return found
+
+
+def _filled(cells: Array, refusal: str) -> Array:
+    """Values with the last one before in the place of each that is missing, or else the first."""
+    there = np.flatnonzero(~np.isnan(cells))
+    if not there.size:
+        raise Error(f"{refusal}: give a number in one of its rows")
+    last = np.searchsorted(there, np.arange(len(cells)), side="right") - 1
+    return cells[there[np.maximum(last, 0)]]
+
+
+def _constant(name: str, columns: DataTable, records: Sequence[_Record], of_row: Sequence[int]) -> Array:
+    """A covariate of each record, which is the same for all of a subject."""
+    cells = columns.numbers(name, cure="give a number, or leave the column out")
+    made: dict[Any, float] = {}
+    for one, rows in _by_subject(records, of_row).items():
+        there = cells[rows][~np.isnan(cells[rows])]
+        if (there != there[:1]).any():
+            raise Error(f"the column '{name}' of {columns.called} changes within the subject {one!r}, from "
+                        f"{there[0]:g} to {there[there != there[0]][0]:g}: name it in over_time=, or leave it out")
+        made[one] = there[0] if there.size else np.nan
+    return np.array([made[record.subject] for record in records])

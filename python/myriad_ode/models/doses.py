@@ -4,7 +4,7 @@ file."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -54,6 +54,8 @@ class Doses:
         made.line = self.line
         return made
 
+    hidden: frozenset[str] = frozenset()  # accessories that it adds
+
     @property
     def parts(self) -> list[Doses]:
         """Those of each state."""
@@ -78,7 +80,7 @@ class Doses:
         """Whether doses take a while."""
         return self.rate is not None or self.duration is not None
 
-    def stops(self, target: Any, free_name: Callable[[str], str]) -> list[Stop]:
+    def stops(self, target: Any, free_name: Callable[[str], str], states: Sequence[Any]) -> list[Stop]:
         """The stops at which a state gets what is given at once: one for each amount whose times are known numbers,
         and else one for each time, as their order is not known."""
         if self.is_infusion:
@@ -96,8 +98,8 @@ class Doses:
             made.append(one)
         return made
 
-    def at_start(self) -> dict[Any, Any]:
-        """What is assigned at the start of a phase: nothing."""
+    def at_start(self, target: Any, known: Mapping[Any, Any]) -> dict[Any, Any]:
+        """What is assigned at the start of a phase, besides what is known: nothing."""
         return {}
 
     def inflow(self) -> Any:

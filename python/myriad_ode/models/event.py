@@ -94,6 +94,8 @@ class Stop:
     """Times at which steps end, one after the other; `do` is what happens there. A single time may be a function of
     `sym.stop_number`, infinite beyond the last one; `do` may then read the number too."""
 
+    order = 1  #: among others at the same time: 0 before them, 2 after them
+
     def __init__(self, times: list[Any], every: Any, count: Any, name: str | None, do: Any) -> None:
         self.times, self.every, self.count, self.name, self.do = times, every, count, name, do
         self.line = users_line()

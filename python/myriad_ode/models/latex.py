@@ -46,7 +46,8 @@ def _lines(model: Any, mass_matrix: Any) -> list[str]:
             return _counter(model) if name == "stop_number" else _built_in[name]
         if kind == "delayed":
             (lag,), _ = expressions_latex([name.lag], symbol, "")
-            return rf"{symbol(name.state)}\left({difference_latex('t', lag)}\right)"
+            state = rf"\dot{{{symbol(name.state)}}}" if name.is_slope else symbol(name.state)
+            return rf"{state}\left({difference_latex('t', lag)}\right)"
         if kind == "event_count":
             return rf"N_{{\mathrm{{{plain(name)}}}}}"
         return _actions[name] if kind == "action" else names.get(name, rf"\mathrm{{{plain(name)}}}")

@@ -22,12 +22,13 @@ controls: tuple[str, ...] = get_args(Control)  #: the names of choices of step-s
 
 class _Facts(NamedTuple):
     """What the library says of a method. `noise`, which it takes, is "none", "any", "additive", or "diagonal", where
-    additive noise counts too."""
+    additive noise counts too. Of those, all but the methods for means alone follow paths."""
 
     stages: int
     fixed_step: bool
     solves_linear_systems: bool
     noise: str
+    follows_paths: bool
 
 
 _facts = {name: _Facts(*facts) for name, facts in _core.methods.items()}
@@ -40,6 +41,7 @@ def _those(condition: Callable[[_Facts], bool]) -> tuple[str, ...]:
 stochastic = _those(lambda facts: facts.noise != "none")  #: for noise, the first by default
 additive_noise = _those(lambda facts: facts.noise == "additive")  #: those for this noise alone
 diagonal_noise = _those(lambda facts: facts.noise == "diagonal")  #: those for this noise, or additive noise, alone
+pathless = _those(lambda facts: facts.noise != "none" and not facts.follows_paths)  #: those for means alone
 fixed_step = _those(lambda facts: facts.fixed_step)
 stiff = _those(lambda facts: facts.solves_linear_systems)  #: those that solve linear systems
 

@@ -13,7 +13,7 @@ from ..symbolic.expression import constant
 from ..symbolic.node import Node, text
 from ..symbolic.numbers import is_whole
 from .delays import refuse_method
-from .methods import additive_noise, default, diagonal_noise, methods, stochastic
+from .methods import additive_noise, default, diagonal_noise, methods, pathless, stiff, stochastic
 
 if TYPE_CHECKING:
     from ..symbolic.expression import Expression
@@ -152,13 +152,15 @@ def refuse_symbols(symbols: Iterable[Node], line: tuple[str, int] | None) -> Non
 def refuse_parts(model: Any) -> None:
     """Refuses what a model with noise may not have."""
     what, instead = "", ""
-    if model.events or model.triggers:
-        what = "events and triggers"
-        instead = "its paths are too rough to locate them; look for a condition at the ends of steps, in after_step"
-    elif model.summaries:
-        what = "extrema and integrals over a phase"
-        instead = ("between two steps its paths are not known; take extrema in after_step, and give an integral a "
-                   "state of its own")
+    if model.triggers:
+        what = "triggers"
+        instead = ("its paths are too rough for conditions that come to hold; give it events, or look for a condition "
+                   "at the ends of steps, in after_step")
+    elif any(one.kind == "integral" for one in model.summaries):
+        what, instead = "integrals over a phase", "give an integral a state of its own"
+    elif model.summaries and model.events:
+        what = "extrema over a phase beside events"
+        instead = ("an event and an extreme would not know of each other within a step; take extrema in after_step")
     elif model.mass_matrix is not None:
         what, instead = "mass matrix", "divide its equations by what stands before their derivatives"
     elif model.units_of_states is not None:
@@ -195,6 +197,14 @@ def method_for(model: AnyModel, method: str | None, precision: str) -> str:
     if noise.count > most_of:
         raise Error(f"the model has {noise.count} Wiener processes, and there may be {most_of} in {precision} "
                     "precision: let states share some")
+    if method in pathless and (model.events or model.summaries):
+        raise Error(f"{method} follows no path, so that between the ends of a step there is nothing for the model's "
+                    f"{'events' if model.events else 'extrema'} to be found on: give method=\"euler_maruyama\", or "
+                    "another one with a strong order")
+    if method in stiff and (model.events or model.summaries):
+        raise Error(f"{method} is for steps in which a stiff drift undoes the noise, and the model's "
+                    f"{'events' if model.events else 'extrema'} are found within steps as if it did not: give "
+                    "method=\"euler_maruyama\", with steps that resolve the drift")
     if method in additive_noise and noise.dependent is not None:
         raise Error(f"{method} takes noise that depends on no state, and that of the model depends on "
                     f"{noise.dependent}: give method=\"euler_maruyama\", or \"sriw1\" for diagonal noise")

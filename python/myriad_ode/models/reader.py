@@ -211,7 +211,7 @@ class Reader:
                 raise Error(f"stops[{i}] is {type(given).__name__}{at(self.line)}: make it by my.stop(time, "
                             "do=...)")
             one = Stop([], None, None, given.name or f"stop_{i + 1}", None)
-            one.line, what = given.line, f"stop {one.name}"
+            one.line, one.order, what = given.line, given.order, f"stop {one.name}"
 
             def real_of(value: Any, what: str = what) -> Node | None:
                 return None if value is None else to_real(self._real(self.value(value, what), what))

@@ -29,6 +29,7 @@ from .latex import model_html, model_latex
 from .mass_matrix import left_sides, read_mass_matrix
 from .noise import equation_texts, read_noise, refuse_parts, refuse_symbols
 from .reader import Reader
+from .tabled_doses import refuse_misfits
 from .time_jumps import TimeSwitches
 from .trigger import Edge, Queue, Trigger, edges_of, needs_queue
 from .units import CouplingTable, together, unit_by_unit
@@ -185,7 +186,7 @@ class RecordedModel(AnyModel):
         """The model whose states get these doses, from `my.doses(...)` or `my.dose_table(...)`, besides what the model
         itself does."""
         line, made, given, reader = users_line(), self.changeable(), self._as_given, copy.copy(self._reader)
-        made.line = line
+        made.line, made.has_doses = line, True
         for part in ("rhs", "events", "stops", "triggers", "noise", "observed", "initialise", "hidden"):
             setattr(made, part, getattr(given, part))
         made.equations = dict(self.equations)
@@ -199,13 +200,17 @@ class RecordedModel(AnyModel):
         if wrong is not None:
             raise Error(f"with_doses gets a {type(wrong).__name__}{at(line)}: make it by my.doses(state, amount, "
                         "at=...)")
-        stops = []
+        stops, parts = [], []
         for one in [part for table in several for part in table.parts]:
             reader.line = one.line
-            given_name = name_of(one.into)
-            target = sym.symbol("state", self.aliases.get(given_name, given_name))
-            shares = self._shares(target.value[1], one.line)
-            one = one.read(reader.expression)
+            parts.append(one.read(reader.expression))
+        refuse_misfits(parts, given, self.has_table)
+        for one in parts:
+            reader.line, target = one.line, None
+            if one.into is not None:
+                given_name = name_of(one.into)
+                target = sym.symbol("state", self.aliases.get(given_name, given_name))
+            shares = [] if target is None else self._shares(target.value[1], one.line)
             for symbol in symbols_of(one.values):
                 kind, name = symbol.value
                 if kind == "state" or kind not in kinds.valued:
@@ -215,11 +220,13 @@ class RecordedModel(AnyModel):
             for state, share in zip(made.equations, shares):
                 if share != 0:
                     made.equations[state] = add(made.equations[state], multiply(constant(share), one.inflow()))
-            at_start = one.at_start()
-            made.hidden |= {accessory.value[1] for accessory in at_start}
-            made.initialise = [*made.initialise, *reader.assignments(at_start, "initialise")]
-            stops += one.stops(target, free_name)
-        made.stops = [*made.stops, *reader.stops(stops)]
+            known = dict(made.initialise)
+            started = one.at_start(sym.symbol("state", self.states[0]) if target is None else target, known)
+            made.initialise = [*(known | dict(reader.assignments(started, "initialise"))).items()]
+            stops += one.stops(target, free_name, list(self.equations))
+            made.hidden |= one.hidden
+        made.has_table = self.has_table or any(isinstance(table, DoseTable) for table in several)
+        made.stops = sorted([*made.stops, *reader.stops(stops)], key=lambda one: one.order)
         made.rhs = list(made.equations.values())
         made._collect(list(made.equations))
         made._make_jumps_exact(given.name or None, self.mass_matrix is not None)
@@ -316,11 +323,16 @@ class RecordedModel(AnyModel):
         self.accessories_are_outputs = any(components[kind] for kind in kinds.accessories) and not (
             self.queue or read & {*kinds.accessories})
         self._hooks = hooks
+        self._name_delays(pasts)
+
+    def _name_delays(self, pasts: list[Node]) -> None:
+        """The delayed values, with names that nothing else has."""
         self.delays: list[delays.Delay] = []
         taken = [*self.component_names, *self._reserved]
         for one in delays.delays_of(pasts):
-            number = 1 + sum(other.state == one.state for other in self.delays)
-            taken.append(sym.free_name(f"{one.state}_past" + (f"_{number}" if number > 1 else ""), taken))
+            of_state = f"{one.state}_{'slope' if one.is_slope else 'past'}"
+            number = 1 + sum((other.state, other.is_slope) == (one.state, one.is_slope) for other in self.delays)
+            taken.append(sym.free_name(of_state + (f"_{number}" if number > 1 else ""), taken))
             self.delays.append(one._replace(name=taken[-1]))
 
     def enumerations(self) -> list[tuple[str, list[str]]]:

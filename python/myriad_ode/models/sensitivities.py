@@ -60,7 +60,7 @@ class WithSensitivities(Extended):
             raise Error(f"the model has {'sensitivities' if isinstance(model, WithSensitivities) else 'tangents'} "
                         f"already{line}: give the model alone")
         refuse_derivatives(model, "derivatives")
-        delays.refuse(model, "derivatives")
+        delays.refuse_derivatives(model, "derivatives")
         if model.mass_matrix is not None:
             raise Error(f"the model has a mass matrix{line}, with which initial values of algebraic states would not "
                         "be independent: solve its algebraic equations in the others")
@@ -76,6 +76,9 @@ class WithSensitivities(Extended):
         for name in names:
             if name not in possible:
                 raise unknown(name, possible, "component that sensitivities can be by")
+        if model.delays and "t_begin" in names:
+            raise Error(f"free={wanted!r}{line}: a model with delays has no derivatives by t_begin, as its past would "
+                        "begin elsewhere")
         twice = next((name for name in names if names.count(name) > 1), None)
         if not names or twice is not None:
             what = f"'{twice}' is there twice" if twice else "no component is named"

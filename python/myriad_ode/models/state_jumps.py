@@ -15,6 +15,7 @@ import numpy as np
 
 from ..base.errors import Error
 from ..symbolic import expression as ex, symbols as sym
+from ..symbolic.delays import pasts_of
 from ..symbolic.evaluate import evaluate
 from ..symbolic.expression import make
 from ..symbolic.node import symbols_of, text, walk
@@ -28,8 +29,7 @@ if TYPE_CHECKING:
 _comparisons = "less", "less_equal", "greater", "greater_equal"
 _whole = "floor", "rint", "floor_divide"
 _samples = 8
-_cure = ("make each an event whose action sets an accessory, which the equations read instead, or write a transition "
-         "that is continuous")
+_cure = "give my.with_located_switches(model), whose steps end there, or write a transition that is continuous"
 
 
 def jumps(model: AnyModel) -> list[str]:
@@ -37,7 +37,7 @@ def jumps(model: AnyModel) -> list[str]:
     if not isinstance(model, RecordedModel):
         return []
     if model.jumps_by_state is None:
-        model.jumps_by_state = _jumps_of(model)
+        model.jumps_by_state = [text(node) for node in jumping(model)[1]]
     return model.jumps_by_state
 
 
@@ -59,14 +59,18 @@ def _where(found: Sequence[str]) -> str:
     return f"the equations jump where {' and '.join(several)} changes"
 
 
-def _jumps_of(model: RecordedModel) -> list[str]:
+def jumping(model: RecordedModel) -> tuple[list[Any], list[Any]]:
+    """The equations and the quantities of summaries, and the operations in them that make them jump where no step ends:
+    arguments before what is of them."""
     roots = rebuilt([*model.equations.values(), *(quantity for _, quantity in model.quantities_as_given)],
                     model.switches.times_of.without_copysign)
     moving = {sym.time, *(s for s, rate in model.equations.items() if not (rate.op == "constant" and rate.value == 0))}
-    return [text(node) for node in walk(roots)
-            if (surface := _Surface.of(node)) is not None and node not in model.switches.located
-            and not moving.isdisjoint(symbols_of(surface.decisive))
-            and _jumps(node, surface, [root for root in roots if node in set(walk([root]))], moving)]
+    moving |= set(pasts_of(roots))
+    located = model.switches.located
+    return roots, [
+        node for node in walk(roots) if (surface := _Surface.of(node)) is not None and node not in located
+        and not moving.isdisjoint(symbols_of(surface.decisive))
+        and _jumps(node, surface, [root for root in roots if node in set(walk([root]))], moving)]
 
 
 class _Surface:
@@ -114,16 +118,21 @@ def _jumps(node: Any, surface: _Surface, roots: Sequence[Any], moving: set[Any])
     for symbol in symbols_of([surface.function]):
         if symbol not in moving:
             continue
-        found = _zero(surface, node, symbol, at, whole)
-        if not np.isfinite(found).any():
+        zero = _zero(surface, node, symbol, at, whole)
+        if not np.isfinite(zero).any():
             continue
-        on, size = _difference(node, surface, roots, {**at, symbol: found}, whole)
         # A jump is about as large beside the surface as on it; what is continuous is much larger there, even a root.
-        beside = np.fmax(*(_difference(node, surface, roots, {**at, symbol: found + by * (np.abs(found) + 1e-3)},
+        beside = np.fmax(*(_difference(node, surface, roots, {**at, symbol: zero + by * (np.abs(zero) + 1e-3)},
                                        whole)[0] for by in (-1e-8, 1e-8)))
-        valid = np.isfinite(on)
-        if valid.any():
-            return bool((valid & (on > 1e-13 * size) & ~(on <= 0.1 * beside)).any())
+        known = False
+        for found in (zero, np.nextafter(zero, -np.inf), np.nextafter(zero, np.inf)):  # others may decide there too
+            on, size = _difference(node, surface, roots, {**at, symbol: found}, whole)
+            valid = np.isfinite(on)
+            if (valid & (on > 1e-13 * size) & ~(on <= 0.1 * beside)).any():
+                return True
+            known = known or bool(valid.any())
+        if known:
+            return False
     return True  # who knows
 
 

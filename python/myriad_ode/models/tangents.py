@@ -46,7 +46,10 @@ class WithTangents(Extended):
             raise Error(f"transient_phases is {transient_phases!r}{at(users_line())}: give the number of phases that "
                         "do not count, 0 or more")
         refuse_derivatives(model, "tangents")
-        delays.refuse(model, "tangents")
+        delays.refuse_derivatives(model, "tangents")
+        if model.delays and vectors != 1:
+            raise Error(f"{vectors} tangent vectors{at(users_line())}: a model with delays has one, for the largest "
+                        "exponent; several would have to be orthogonal with their past")
         if model.mass_matrix is not None:
             raise Error(f"the model has a mass matrix{at(users_line())}, with which tangents of algebraic states would "
                         "not be independent: solve its algebraic equations in the others")

@@ -16,6 +16,7 @@ from ..symbolic.node import symbols_of, text
 from ..symbolic.folding import both, choose, compare, either, is_constant, number, opposite, subtract, value_of
 from ..symbolic.numbers import is_whole
 from .event import Event
+from .remainders import equality
 
 if TYPE_CHECKING:
     from ..symbolic.types import Assignments, ByComponent, Written
@@ -125,7 +126,12 @@ def edges_of(triggers: Sequence[Trigger], queue: Queue | None) -> Iterator[Edge]
     if queue is not None:
         for number, one in enumerate(triggers):
             if not one.persistent:
-                yield Edge(f"{one.name}_ceases", opposite(one.condition), drops=number)
+                yield Edge(part_name(one.name, "ceases"), opposite(one.condition), drops=number)
+
+
+def part_name(of: str | None, part: str) -> str:
+    """The name of a part of a trigger: without the two underscores at once that no name of C++ may have."""
+    return f"{of}x_{part}" if of and of.endswith("_") else f"{of}_{part}"
 
 
 def side(name: str) -> Any:
@@ -191,7 +197,8 @@ class Sides:
             below = self._named(subtract(*condition.args[::-1]))
             return below if condition.op == "less_equal" else opposite(below)
         if condition.op in ("equal", "not_equal"):
-            holds = self._is_zero(*condition.args)
+            of_remainder = equality(*condition.args)
+            holds = self._is_zero(*condition.args) if of_remainder is None else self._of(of_remainder)
             return holds if condition.op == "equal" else opposite(holds)
         raise Error(f"`{text(condition)}` in trigger {self._what} is no comparison: write it with <, <=, >, >=, == or "
                     "!=")
@@ -206,7 +213,7 @@ class Sides:
 
     def _named(self, function: Any) -> Any:
         number = len(self.functions) - self._first + 1
-        return side(self.functions.setdefault(function, f"{self._what}_side_{number}"))
+        return side(self.functions.setdefault(function, part_name(self._what, f"side_{number}")))
 
     def events(self) -> Iterator[Event]:
         """The events of the functions. Those of instants note that they have come."""

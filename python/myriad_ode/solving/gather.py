@@ -11,6 +11,7 @@ import numpy as np
 
 from ..base import component_kinds as kinds
 from ..base.errors import Error
+from ..models.any_model import AnyModel
 from ..models.components import Components, by_component, short_name
 from ..models.sensitivities import ends_of_domain
 from ..sweeps.gpu_inputs import DeviceInput
@@ -107,6 +108,16 @@ def refuse_shared(kind: str, name: str, values: Any) -> NoReturn:
             f"or make it a parameter where the model is made, as by my.parameter(\"{name}\") instead of "
             f"my.shared(\"{name}\")")
     raise Error(f"'{name}' is shared by all instances and {what}: give one number, {cure}")
+
+
+def refuse_backwards(model: AnyModel, begin: Any, end: Any) -> None:
+    """Refuses a time domain that goes backwards, of arrays that fit, where the model has doses."""
+    if model.has_doses and not isinstance(begin, DeviceInput) and not isinstance(end, DeviceInput):
+        begin, end = np.broadcast_arrays(begin, end)
+        if (end < begin).any():
+            first, last = begin[end < begin][0], end[end < begin][0]
+            raise Error(f"the model {model.name} has doses, and time goes from {first:g} to {last:g}: backwards a dose "
+                        "would be given where it has to be taken away, so let time go forwards")
 
 
 def gather(components: Components, values: Mapping[str, Any], sweep: Sweep | ByComponent | None,

@@ -6,7 +6,7 @@ from __future__ import annotations
 import dataclasses
 import functools
 import time as clock
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,7 +19,8 @@ from ..kernels.devices import device_names
 from ..models import time_jumps
 from ..models.any_model import AnyModel
 from ..models.components import Components
-from ..models.delays import refuse_history_steps
+from ..models.delays import refuse_history_steps, refuse_method
+from ..models.located_switches import note_on_sliding
 from ..models.methods import fixed_step, method_type
 from ..models.noise import count_of_paths, method_for, refuse_options_of_paths
 from ..models.once_per_phase import prepared
@@ -33,7 +34,7 @@ from ..sweeps.gpu_inputs import DeviceInput
 from ..sweeps.inputs import numbers
 from ..sweeps.sweep import Sweep, with_paths
 from .core_options import finish_options, longest_step, make_options, options_of, takes_options
-from .gather import fill, gather, given_values
+from .gather import fill, gather, given_values, refuse_backwards
 from .options import Options, SolveArguments
 from .progress import ProgressDisplay
 from .sensitivity_options import start_derivatives, with_derivatives
@@ -67,6 +68,7 @@ class Call:
             model = with_sensitivities(model.model, model.free, control=False)
         self.model: AnyModel = (prepared(model) if free is None else
                                 with_sensitivities(model, free, sensitivity_control))
+        refuse_method(self.model, self.method)
         self.components = Components(self.model)
 
     def gather(self, sweep: Sweep | ByComponent | None, start: ByComponent | None, time: tuple[Values, Values] | None,
@@ -79,6 +81,7 @@ class Call:
             self.components.defaults = {**self.components.defaults, **start_derivatives(self.model, values)}
         self.sweep = sweep
         self.given, self.domain, self.count = gather(self.components, values, sweep, time, size)
+        refuse_backwards(self.model, *self.domain)
         if isinstance(self.model, WithSensitivities):
             options = with_derivatives(self.model, options, self.components)
         self.options = options
@@ -138,6 +141,12 @@ class Call:
             raise Error(f"'tolerance_scale' has {len(scale)} values for {self.count} instances: give one for each")
         self.ensemble.array("tolerance_scale")[...] = scale
 
+    def remember_past(self, given: Options, again: Callable[..., Run]) -> None:
+        """Has outputs that read the past of samples get it from another run, by `again`."""
+        if self.components.past_outputs and given.phases == 1:
+            self.past = PastStates(lambda times: again(
+                options=dataclasses.replace(given, samples={"times": times}, record=None)).samples)
+
     def run_of_none(self) -> Run:
         """The run of a sweep without instances, which needs no kernel."""
         record, samples = self.core_options.record, self.core_options.samples
@@ -163,6 +172,8 @@ class Call:
                   self.describe, self.past)
         if isinstance(self.model, WithSensitivities) and self.count and (undefined := note(run)) is not None:
             run.report.notes.append(undefined)
+        if (sliding := note_on_sliding(self.model, run.report.by_status)) is not None:
+            run.report.notes.append(sliding)
         if isinstance(self.failure, KeyboardInterrupt):
             raise Interrupted(run) from None
         if self.failure is not None:
@@ -209,24 +220,20 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
     paths             so many paths of each instance of the sweep, for a model with noise: a last axis of the sweep, so
                       that path j of instance i is the instance i * paths + j. Arrays are in the sweep, not in start=
     precision         "double" or "float"
-    device            "cpu", "cpu:4" (threads), "cuda", "cuda:1" (the second GPU), or "auto", the first GPU if there is
-                      one, and NVRTC to compile for it, and the CPU otherwise; or a list of GPUs, which divide the
-                      instances among them, with the bits that one of them has
+    device            "cpu", "cpu:4" (threads), "cuda", "cuda:1" (the second GPU), or "auto": the first GPU if there is
+                      one, and NVRTC, and otherwise the CPU; or a list of GPUs, which divide the instances
     interpreted       True runs the model without compiling it, several times slower; None does so only where there
                       is no compiler, which the report tells
     make_consistent   True changes initial states so that they satisfy the algebraic equations of a model with a
                       singular mass matrix, by Newton's method, in directions that leave M y as it is; otherwise values
                       that do not are refused
     progress          True for a bar, or a function of the numbers of instances done and of all
-    free              components that derivatives of the results are wanted by, as in `[k, x]`: initial states,
-                      parameters and shared values, and `my.t_begin` and `my.t_end`, the ends of the time
-                      domain; `run.sensitivity[x, k]` are then the derivatives
-    sensitivity_control  whether their errors take part in choosing the steps; without, the solution is that of a call
-                      without sensitivities
+    free              components that derivatives of the results are by, `run.sensitivity[x, k]`: initial states,
+                      parameters, shared values, and `my.t_begin` and `my.t_end`, the ends of the time domain
+    sensitivity_control  whether their errors take part in choosing the steps
 
-    Raises `my.Error` if something is missing or does not fit, before any work. Ctrl-C raises
-    `my.Interrupted`, whose `run` has what is done; instances that take more than half a second longer end as
-    "interrupted".
+    Raises `my.Error` if something is missing or does not fit, before any work. Ctrl-C raises `my.Interrupted`, whose
+    `run` has what is done; instances that take more than half a second longer end as "interrupted".
 
     The options:"""
     begin = clock.perf_counter()
@@ -236,12 +243,10 @@ def solve(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
     call.gather(sweep, start, time, size, given, paths)
     if call.count == 0:
         return call.run_of_none()
-    if call.components.past_outputs and given.phases == 1:
-        again = functools.partial(solve, model, sweep, start=start, time=time, method=method, control=control,
-                                  tolerance_scale=tolerance_scale, size=size, paths=paths, precision=precision,
-                                  device=device, interpreted=interpreted, make_consistent=make_consistent)
-        call.past = PastStates(lambda times: again(
-            options=dataclasses.replace(given, samples={"times": times}, record=None)).samples)
+    call.remember_past(given, functools.partial(
+        solve, model, sweep, start=start, time=time, method=method, control=control, tolerance_scale=tolerance_scale,
+        size=size, paths=paths, precision=precision, device=device, interpreted=interpreted,
+        make_consistent=make_consistent))
     call.prepare(devices, interpreted)
     call.integrate(devices, tolerance_scale, make_consistent, progress)
     return call.run(clock.perf_counter() - begin, no_gpu)

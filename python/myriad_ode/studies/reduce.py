@@ -28,6 +28,11 @@ class Reduction:
     def __init__(self, kind: str, *arguments: Any) -> None:
         self.kind, self.arguments = kind, arguments
 
+    @property
+    def variables(self) -> list[str]:
+        """The names of what it reduces."""
+        return list(self.arguments[1]) if self.kind == "sum_of" else [self.arguments[0]]
+
     def core(self) -> _core.Reduction:
         """The reduction for the core."""
         arguments = [a.core() if isinstance(a, Axis) else a for a in self.arguments]

@@ -5,6 +5,7 @@ a stop, and handed to any executor. The C++ library's `study` with a model of Py
 from __future__ import annotations
 
 import dataclasses
+import functools
 import hashlib
 import os
 import pickle
@@ -25,6 +26,7 @@ from ..models import time_jumps
 from ..models.any_model import AnyModel
 from ..models.components import Components, listed, short_name
 from ..models.delays import refuse_history_steps
+from ..models.located_switches import note_on_sliding
 from ..models.methods import fixed_step, method_type, stochastic
 from ..models.noise import count_of_paths, method_for, refuse_options_of_paths
 from ..models.once_per_phase import prepared
@@ -32,7 +34,7 @@ from ..models.sensitivities import note_on
 from ..models.whole_numbers import check_whole_numbers
 from ..results.report import Interrupted
 from ..solving.core_options import finish_options, longest_step, make_options, options_of, takes_options
-from ..solving.gather import full_name, gather_axes, refuse_missing, refuse_shared
+from ..solving.gather import ends_of, full_name, gather_axes, refuse_backwards, refuse_missing, refuse_shared
 from ..solving.options import Options, StudyArguments
 from ..solving.progress import ProgressDisplay
 from ..sweeps.inputs import by_name, only, path_text, real, text, whole
@@ -42,6 +44,7 @@ from ..symbolic.functions import draws
 from ..symbolic.node import Node
 from ..symbolic.symbols import time as time_symbol
 from .executed_run import ExecutedRun
+from .outputs import with_outputs
 from .reduce import Reduction
 from .result import StudyResult
 
@@ -72,8 +75,7 @@ class Study:
     def _build(self, model: AnyModel, sweep: Sweep | ByComponent | None, *, start: ByComponent | None,
                time: tuple[Any, Any] | None, keep: SomeComponents | Mapping[str, Any] | None,
                reduce: Reduction | Sequence[Reduction], draws: int | None, paths: int | None, seed: int | None,
-               title: str,
-               units: Mapping[Any, str] | None, notes: Mapping[str, object] | None, method: Method | None,
+               title: str, units: Mapping[Any, str] | None, notes: Mapping[str, object] | None, method: Method | None,
                control: Control | Sequence[Control], options: Options, precision: Precision,
                interpreted: bool | None) -> None:
         if not isinstance(model, AnyModel):
@@ -85,6 +87,8 @@ class Study:
         chosen = method_for(model, method, precision)
         if chosen in fixed_step and options.step is None:
             raise Error(f"{chosen} takes fixed steps: give step=")
+        reductions = _reductions(reduce)
+        model, options = with_outputs(model, keep, options, reductions)
         model = prepared(model)
         components = self._components = Components(model)
         seed = whole(options.seed if seed is None else seed, "seed", (1 << 63) - 1)
@@ -106,11 +110,12 @@ class Study:
                                                      precision, self._interpreted)
         try:
             made = self._core = _core.Study(
-                components.names, list(components.tables.values()),
-                model.generator, "float64" if precision == "double" else "float32",
-                model.name or "model",
+                {kind: [model.called.get(name, name) for name in names] for kind, names in components.names.items()},
+                list(components.tables.values()), model.generator,
+                "float64" if precision == "double" else "float32", model.name or "model",
                 method_type(chosen, control, samples is not None).replace("myriad::", ""))
             made.options(core_options)
+            refuse_backwards(model, *_known_ends(time))
             self._set_instances(made, components, sweep, start, time, draws is not None or paths is not None)
             self._looks_at_domains = bool(samples is not None or options.phase_length or options.carry_on)
             if draws is not None:
@@ -119,11 +124,9 @@ class Study:
                 made.repeat(count_of_paths(model, paths), "path")
             made.seed(seed & ((1 << 64) - 1))
             check_whole_numbers(model.generate, made.size, self._shared_integers)
+            self._name = functools.partial(_name, model, components)
             self._set_kept(made, components, keep, bool(recorded or sampled or reduce or core_options.record.time))
-            for reduction in reduce if isinstance(reduce, (list, tuple)) else [reduce] if reduce else []:
-                if not isinstance(reduction, Reduction):
-                    raise Error(f"reduce= has {reduction!r}: give reductions, as in "
-                                "[my.reduce.mean(\"x_end\")]")
+            for reduction in reductions:
                 made.reduce(reduction.core())
             self._describe(made, components, model, title, units, notes)
         except Error as error:
@@ -132,8 +135,9 @@ class Study:
     def _describe(self, made: _core.Study, components: Components, model: AnyModel, title: str,
                   units: Mapping[Any, str] | None, notes: Mapping[str, object] | None) -> None:
         """What tells the study from others."""
-        for key, unit in by_name(units, "units", "units={x: \"m\"}").items():
-            name = "t" if key is time_symbol else full_name(components, key)
+        of_model = {name: unit for name, unit in components.units.items() if name in components.place}
+        for key, unit in {**of_model, **by_name(units, "units", "units={x: \"m\"}")}.items():
+            name = "t" if key is time_symbol else self._name(key)
             made.unit(name, text(unit, f"the unit of '{name}'"))
         if title:
             made.title(text(title, "the title"))
@@ -213,7 +217,7 @@ class Study:
         only(keep, _keep_choices, "keep=")
         end = keep.get("end", ())
         end = listed(end)
-        names = ["t" if key is time_symbol else full_name(components, key) for key in end]
+        names = ["t" if key is time_symbol else self._name(key) for key in end]
         made.keep(names, *(bool(keep.get(choice, choice != "work")) for choice in _keep_choices[1:]))
 
     @property
@@ -308,9 +312,11 @@ class Study:
 
     def _result(self, results: _core.Results, facts: Mapping[str, Any], folder: str | None,
                 notes: Iterable[str] = ()) -> StudyResult:
+        sliding = note_on_sliding(self._given[0], facts.get("by_status", {}))
         origins = dict.fromkeys(kernel.origin for kernel in self._kernels.values())
         return StudyResult(results, folder, {**facts, "kernel": ", ".join(origins),
-                                              "notes": [*map(in_words, facts["notes"]), *notes]})
+                                              "notes": [*map(in_words, facts["notes"]), *notes,
+                                                        *([sliding] if sliding else [])]})
 
     def payload(self) -> bytes:
         """This study as bytes, for other processes, which are to run the same kernel. By cloudpickle if it is there,
@@ -325,6 +331,27 @@ class Study:
         except Exception as error:
             raise Error("the study cannot be sent to the workers of an executor, as it does not pickle: "
                         f"{error}") from None
+
+
+def _name(model: AnyModel, components: Components, key: Any) -> str:
+    """What the core's study calls a component."""
+    kind, dot, name = full_name(components, key).rpartition(".")
+    return kind + dot + model.called.get(name, name)
+
+
+def _reductions(given: Reduction | Sequence[Reduction]) -> list[Reduction]:
+    """Those of a study as a list."""
+    several: list[Any] = list(given) if isinstance(given, (list, tuple)) else [given] if given else []
+    for one in several:
+        if not isinstance(one, Reduction):
+            raise Error(f"reduce= has {one!r}: give reductions, as in [my.reduce.mean(\"x_end\")]")
+    return several
+
+
+def _known_ends(time: tuple[Any, Any] | None) -> tuple[Any, Any]:
+    """Begin and end of time, where both are numbers; else NaN."""
+    given = (None, None) if time is None else ends_of(time)
+    return given if all(isinstance(one, (int, float)) for one in given) else (np.nan, np.nan)
 
 
 def _computed_by(model: AnyModel, given: Any) -> tuple[AnyModel, Any]:
@@ -361,7 +388,7 @@ def study(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
     keep      components whose last values are kept, `my.time` for the time at which the last phase ended; or
               `dict(end=, records=, samples=, random=, status=, work=)`, of which all but work are True: whether
               records, samples, random values,
-              statuses, and the numbers of steps are kept. By default all states and accessories
+              statuses, and the numbers of steps are kept. By default all states, accessories and outputs of a file
               if nothing is recorded, sampled or reduced
     reduce    reductions over all instances: `my.reduce.mean("x_end")` and others
     draws     instances for each point of the other axes, as for random values

@@ -19,27 +19,28 @@ from .vectors import elementwise
 if TYPE_CHECKING:
     from .types import Values
 
-__all__ = ["delayed"]
+__all__ = ["delayed", "delayed_slope"]
 
 _constants = ("parameter", "shared", "shared_integer")
 
 
 class Past:
-    """What a delayed value is: that of a state, a lag ago. Those of the same state and lag are equal."""
+    """What a delayed value is: that of a state, or its derivative by time, a lag ago. Equal ones are one symbol."""
 
-    __slots__ = ("state", "lag")
+    __slots__ = ("state", "lag", "is_slope")
 
-    def __init__(self, state: Any, lag: Any) -> None:
-        self.state, self.lag = state, lag
+    def __init__(self, state: Any, lag: Any, is_slope: bool = False) -> None:
+        self.state, self.lag, self.is_slope = state, lag, is_slope
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Past) and self.state is other.state and self.lag is other.lag
+        return (isinstance(other, Past) and self.state is other.state and self.lag is other.lag
+                and self.is_slope == other.is_slope)
 
     def __hash__(self) -> int:
-        return hash((id(self.state), id(self.lag)))
+        return hash((id(self.state), id(self.lag), self.is_slope))
 
     def __str__(self) -> str:
-        return f"delayed({text(self.state)}, {text(self.lag)})"
+        return f"delayed{'_slope' if self.is_slope else ''}({text(self.state)}, {text(self.lag)})"
 
     __repr__ = __str__
 
@@ -49,9 +50,9 @@ class Past:
         return all(symbol.value[0] in _constants for symbol in symbols_of([self.lag]))
 
 
-def past(state: Any, lag: Any) -> Any:
+def past(state: Any, lag: Any, is_slope: bool = False) -> Any:
     """The symbol of a delayed value."""
-    return make("symbol", value=("delayed", Past(state, lag)))
+    return make("symbol", value=("delayed", Past(state, lag, is_slope)))
 
 
 def pasts_of(roots: Iterable[Node]) -> list[Node]:
@@ -95,6 +96,21 @@ def delayed(expression: Any, lag: Values) -> Any:
     return replaced([node], values)[0]
 
 
+def delayed_slope(state: Any, lag: Values) -> Any:
+    """The derivative by time that a state had a time `lag` ago: `my.delayed_slope(x, tau)` is x'(t - tau), as neutral
+    equations read it. The lag is one of `my.delayed`. It is the derivative of the method's interpolant, and before the
+    begin that of the state's `history=`, or else zero. At a jump of the state itself it is what is on either side: the
+    jump is not passed on. Of an array each element is delayed."""
+    if any(isinstance(one, (list, tuple)) or isinstance(one, np.ndarray) and one.ndim for one in (state, lag)):
+        return elementwise(delayed_slope, state, lag)
+    by = _checked(to_real(as_number(lag)))
+    node: Any = as_node(state)
+    if node.op != "symbol" or node.value[0] != "state":
+        raise Error(f"delayed_slope({text(node)}, ...){at(users_line())}: only the slopes of states are kept: give a "
+                    "state, and write those of other expressions by the chain rule")
+    return past(node, by, True)
+
+
 def _checked(lag: Any) -> Any:
     """The lag of a delayed value. Refuses one that cannot be."""
     if is_number(lag) and not 0 < lag.value < math.inf:
@@ -113,4 +129,4 @@ def _further(inner: Past, lag: Any) -> Any:
     if not inner.has_constant_lag:
         raise Error(f"`{inner}` is delayed again{at(users_line())}, and its lag depends on time or states, of which it "
                     "would be that of then: give it a lag of parameters and shared values")
-    return past(inner.state, inner.lag + lag)
+    return past(inner.state, inner.lag + lag, inner.is_slope)

@@ -28,24 +28,33 @@ def _times(partial: Expression | Condition | int, derivative: Expression) -> Exp
 def _forwards(node: Node, argument: Node, partial: Expression | Condition | int, derivative: Expression,
               singular: set[int]) -> Expression:
     """The product of a partial derivative and that of its argument. Zero where that is, though the partial one may be
-    infinite there; for exponentials, where they are, as exp(n log(x)) at x = 0."""
+    infinite there; for exponentials, where they are, as exp(n log(x)) at x = 0; and for quotients by what `singular`
+    has, where they are, as 1 / (1 + exp(x)) for large x."""
     if derivative.op == "constant" and derivative.value == 0:
         return derivative
     if isinstance(partial, ex.Expression) and derivative.op != "constant":
         if known_of(node.op).is_singular:  # so that it has the right derivatives in its turn
             partial = fn.where(fn.is_finite(partial) | (derivative != 0.0), partial, 0.0)
-        elif node.op in ("exp", "exp2") and id(argument) in singular:
+        elif node.op in ("exp", "exp2") and id(argument) in singular or _is_overflowing(node, argument, singular):
             return fn.where(partial == 0.0, 0.0, partial * derivative)
     return _times(partial, derivative)
+
+
+_overflow = ("exp", "exp2", "expm1", "sinh", "cosh")  # of arguments of usual size, and their derivatives with them
 
 
 def _with_singular(order: Sequence[Node]) -> set[int]:
     """Nodes whose derivatives may be infinite."""
     found: set[int] = set()
     for node in order:
-        if known_of(node.op).is_singular or any(id(a) in found for a in node.args):
+        if known_of(node.op).is_singular or node.op in _overflow or any(id(a) in found for a in node.args):
             found.add(id(node))
     return found
+
+
+def _is_overflowing(node: Node, argument: Node, singular: set[int]) -> bool:
+    """Whether a node is a quotient by an argument that may be infinite, and its derivatives too."""
+    return node.op == "divide" and argument is node.args[1] and id(argument) in singular
 
 
 def dependencies(roots: Sequence[Node], symbols: Sequence[Node]) -> list[list[int]]:
@@ -144,7 +153,8 @@ def transposed(roots: Sequence[Node], weights: Sequence[Expression],
                 if is_singular:
                     term = fn.where(partial == 0.0, 0.0, term)
                 is_singular = is_singular or known_of(node.op).is_singular
-                is_conditional = is_conditional or node.op in ("exp", "exp2") and id(argument) in above_singular
+                is_conditional = (is_conditional or node.op in ("exp", "exp2") and id(argument) in above_singular
+                                  or _is_overflowing(node, argument, above_singular))
             add(argument, term, is_conditional, is_singular)
     return [by.get(id(s), ex.constant(0.0)) for s in symbols]
 

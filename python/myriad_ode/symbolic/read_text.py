@@ -12,7 +12,7 @@ from typing import Any, NoReturn
 
 from ..base.errors import Error, at, users_line
 from . import expression as ex, functions as fn
-from .delays import delayed
+from .delays import delayed, delayed_slope
 from .symbols import symbol, time
 
 _binary = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
@@ -21,7 +21,7 @@ _binary = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul,
 _compare = {ast.Lt: operator.lt, ast.LtE: operator.le, ast.Gt: operator.gt, ast.GtE: operator.ge, ast.Eq: operator.eq,
             ast.NotEq: operator.ne}
 functions = {name: function for name, function in fn.by_name.items() if name not in ("sincos", "sincospi")}
-functions.update(min=fn.minimum, max=fn.maximum, ln=fn.log, delayed=delayed)
+functions.update(min=fn.minimum, max=fn.maximum, ln=fn.log, delayed=delayed, delayed_slope=delayed_slope)
 
 
 def _shown(source: str) -> str:

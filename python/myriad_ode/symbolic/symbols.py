@@ -40,9 +40,9 @@ typeid typename union unsigned using virtual void volatile wchar_t while xor xor
 """.split())
 # Members that the library looks for in a model by name, and macros of C's headers.
 _reserved = {*kinds.every, *"""observed rhs jacobian events
-observe summaries initialise after_step after_event after_stop finalise generate writes_parameters writes_time_domain
-accessories_are_outputs scalar_only rare_events large_rhs rhs_weight autonomous jacobian_pattern mass_matrix
-pack_batches max_block_size
+observe summaries initialise after_step after_event after_stop after_trigger finalise generate writes_parameters
+writes_time_domain accessories_are_outputs scalar_only rare_events large_rhs rhs_weight autonomous jacobian_pattern
+mass_matrix pack_batches max_block_size triggers_know_their_function
 myriad std linux unix errno assert NULL NAN INFINITY EOF BUFSIZ RAND_MAX HUGE_VAL OVERFLOW UNDERFLOW DOMAIN SING PLOSS
 TLOSS stdin stdout stderr major minor alloca offsetof issubnormal math_errhandling sched_priority""".split()}
 _reserved_pattern = re.compile(
@@ -67,7 +67,8 @@ def check_name(name: Any, what: str) -> str:
     return name
 
 
-def _is_allowed(name: str) -> bool:
+def is_allowed(name: str) -> bool:
+    """Whether a component can have the name."""
     try:
         check_name(name, "a component")
     except Error:
@@ -78,10 +79,10 @@ def _is_allowed(name: str) -> bool:
 def free_name(name: str, taken: Collection[str]) -> str:
     """The name, or else the first like it, with an underscore, a number or x_ before it, that a component can have and
     that is not taken."""
-    if not _is_allowed(name) and not _is_allowed(f"{name}_"):
+    if not is_allowed(name) and not is_allowed(f"{name}_"):
         name = f"x_{name}"  # as all names that begin like C's M_PI
     for candidate in itertools.chain((name, f"{name}_"), (f"{name}_{i}" for i in range(2, 10000))):
-        if candidate not in taken and _is_allowed(candidate):
+        if candidate not in taken and is_allowed(candidate):
             return candidate
     raise Error(f"no name for a component is left that is like '{name}'")
 

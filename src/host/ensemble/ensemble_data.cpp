@@ -175,7 +175,7 @@ void ensemble_data<R>::keep_history(std::int32_t slots, std::int32_t terms) {
     require(untouched || history_slots == 0, "the past of these instances is kept as ", history_slots, " steps of ",
             history_terms, " numbers, but this call would keep ", slots, " of ", terms, cure,
             "go on with the same method and the same history_steps, or call restart() to begin again");
-    const auto numbers = detail::history_numbers(slots, shape->n_kept, terms);
+    const auto numbers = detail::history_numbers(slots, shape->n_kept, terms, shape->jump_numbers);
     history = {static_cast<int>(numbers), size, R(0)};
     history_jumps = {slots, size, std::uint32_t{0}};
     history_place = {2, size, std::int32_t{0}};
@@ -194,7 +194,7 @@ template <class R>
 double ensemble_data<R>::history_bytes(const model_shape& shape, std::int64_t size, std::int32_t slots,
                                        std::int32_t terms) {
     if (shape.n_kept == 0) return 0;
-    const auto numbers = static_cast<double>(detail::history_numbers(slots, shape.n_kept, terms));
+    const auto numbers = static_cast<double>(detail::history_numbers(slots, shape.n_kept, terms, shape.jump_numbers));
     return static_cast<double>(size) * (sizeof(R) * numbers + sizeof(std::uint32_t) * slots + 2 * sizeof(std::int32_t));
 }
 

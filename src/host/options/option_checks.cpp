@@ -168,6 +168,9 @@ void check_path(const options& o, bool has_diffusion) {
             "leave it out; random numbers of hooks have seeds of their own");
     require(has_diffusion || o.noise_step == 0, named_option("noise_step"), " is ", o.noise_step,
             ", but the model has no diffusion, whose paths have such steps", cure, "leave it out");
+    require(!has_diffusion || o.sub_samples == 1, named_option("sub_samples"), " is ", o.sub_samples,
+            ", but the model has a diffusion, and the law of its paths says what happens within a step", cure,
+            "leave it out");
     if (!has_diffusion || o.noise_step == 0) return;
     const double cells = o.step / o.noise_step, parts = cells * detail::parts_of_cell;
     require(parts > 0.5 && std::fabs(parts - std::rint(parts)) <= 1e-6 * parts, named_option("step"), " is ", o.step,

@@ -370,7 +370,7 @@ TEST_CASE(
     for (const bool bad : {true, false}) {
         bool begun = false;  // more than three were begun before the check was over: nearly always, depending on the
                              // threads
-        for (int attempt = 0; attempt < 20 && !begun; ++attempt) {
+        for (int attempt = 0; attempt < 100 && !begun; ++attempt) {
             auto e = filled_and_pinned();
             if (bad) e.state(drift::x)(size - 1) = std::numeric_limits<double>::infinity();
             the_gpu.fail(call::reserve, bad ? 100 : 3);

@@ -424,6 +424,18 @@ TEST_CASE("roots of one direction are no accumulation though the middle between 
     }
 }
 
+TEST_CASE("with sub_samples a function that turns far from zero ends no step") {
+    const auto steps = [](double c, std::int32_t points) {
+        auto e = ensemble_of(motion{.x = 1, .k = 1}, {position(c), never(), never()}, 0, 20);
+        auto o = options_for(1e-6, 1e-3);
+        o.sub_samples = points;
+        return myriad::solve<myriad::cash_karp>(tests::test_device(1), e, o).accepted_steps;
+    };
+    CHECK(steps(-2, 16) == steps(-2, 1));
+    // One that all but touches zero does.
+    CHECK(steps(-1 - 1e-6, 16) > steps(-1 - 1e-6, 1));
+}
+
 TEMPLATE_TEST_CASE("a crossing that redone steps overshoot is not put at the start of the step", "", ALL_METHODS) {
     // x = sin(t + a), with a tolerance that x meets near its zeros only by chance
     for (const double tolerance : {1e-17, 1e-18}) {

@@ -26,6 +26,39 @@ struct decay {
     }
 };
 
+/// y' = y(t - 1 / r), y = 1 before: 1 + t where r is zero, as the delay is infinite there.
+struct rare {
+    enum state { y, n_state };
+    enum parameter { r, n_parameter };
+    enum delayed { past, n_delayed };
+
+    MYRIAD_FUNCTION static int delayed_state(int) { return y; }
+    template <class R>
+    MYRIAD_FUNCTION static R lag(int, const auto& p) {
+        return R(1) / p[r];
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>&, const auto& p) {
+        return {p.delayed[past]};
+    }
+};
+
+/// y' = y(min(t - 1/2, 1/4)), y = 1 before: from t = 3/4 on y = 57/32 + 5/4 (t - 3/4).
+struct frozen {
+    enum state { y, n_state };
+    enum delayed { past, n_delayed };
+
+    MYRIAD_FUNCTION static int delayed_state(int) { return y; }
+    template <class R>
+    MYRIAD_FUNCTION static R lag(int, const R& t, const myriad::vec<R, n_state>&, const auto&) {
+        return myriad::select(t > R(0.75), t - R(0.25), R(0.5));
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>&, const auto& p) {
+        return {p.delayed[past]};
+    }
+};
+
 /// Three states, two of which are delayed, by three delays: y1' = y1(t - 1), y2' = y1(t - 1) + y2(t - 0.2), y3' =
 /// y2(t). Example 3 of Wille and Baker, J. Comput. Appl. Math. 43 (1992) 301-305.
 struct chain {
@@ -81,6 +114,19 @@ struct pantograph {
         using std::exp;
         return {-now[y] + R(0.5) * p[q] * (p.delayed[past] - exp(-p[q] * t))};
     }
+};
+
+/// The same, with an event where the delayed value is one half, and what it was at the beginning.
+struct watched_pantograph : pantograph {
+    enum accessory { at_begin, seen, n_accessory };
+    enum event { half, n_event };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto, const myriad::vec<R, n_state>&, const auto& p) {
+        return {p.delayed[past] - R(0.5)};
+    }
+    MYRIAD_FUNCTION static void initialise(auto& lane) { lane.accessory[at_begin] = lane.delayed[past]; }
+    MYRIAD_FUNCTION static void after_event(int, auto& lane) { lane.accessory[seen] = lane.t; }
 };
 
 /// y' = a y(t - tau) + b y, y = exp(m t) before and after, if m = a exp(-m tau) + b. Stiff for a large -b.

@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <utility>
 #include <vector>
 
 #include <myriad/myriad.hpp>
@@ -80,6 +82,71 @@ ensemble<exponential> growing(const std::vector<double>& lags, double a, double 
     return e;
 }
 
+constexpr double infinite = std::numeric_limits<double>::infinity();
+/// Instances that differ.
+template <class Model>
+ensemble<Model> varied();
+template <>
+ensemble<decay> varied() {
+    return decaying(13, infinite);
+}
+template <>
+ensemble<echo> varied() {
+    ensemble<echo> e(13);
+    for (int i = 0; i < 13; ++i) e.parameter(echo::tau)[i] = 0.3 + 0.11 * i;
+    e.parameter(echo::period) = 1.3;
+    e.state(echo::x) = 0;
+    e.state(echo::z) = 0;
+    e.accessory(echo::seen) = 0;
+    e.accessory(echo::time) = 0;
+    e.time_domain(0, infinite);
+    return e;
+}
+template <>
+ensemble<pantograph> varied() {
+    ensemble<pantograph> e(13);
+    for (int i = 0; i < 13; ++i) e.parameter(pantograph::q)[i] = 0.6 + 0.03 * i;
+    e.state(pantograph::y) = 1;
+    e.time_domain(0, infinite);
+    return e;
+}
+template <>
+ensemble<exponential> varied() {
+    std::vector<double> lags;
+    for (int i = 0; i < 13; ++i) lags.push_back(0.2 + 0.1 * i);
+    auto e = growing(lags, 3, -50);
+    e.time_domain(0, infinite);
+    return e;
+}
+/// Phases of 0.25, with rings of 256 steps of at most 1/64, which are full from t = 4 on.
+options in_short_rings(int phases) {
+    options o = tolerance(1e-7);
+    o.step = o.maximum_step = 1.0 / 64;
+    o.history_steps = 256;
+    o.phases = phases;
+    o.phase_length = 0.25;
+    return o;
+}
+template <class Model, class Method>
+ensemble<Model> after(const std::vector<int>& calls, int threads = 1, bool reversed = false) {
+    auto e = varied<Model>();
+    if (reversed) {
+        if constexpr (requires { Model::n_parameter; })
+            for (int j = 0; j < Model::n_parameter; ++j)
+                e.parameter(j) = Eigen::ArrayXd(e.parameter(j)).reverse().eval();
+        for (int c = 0; c < Model::n_state; ++c) e.state(c) = Eigen::ArrayXd(e.state(c)).reverse().eval();
+    }
+    for (const int phases : calls) solve<Method>(tests::test_device(threads), e, in_short_rings(phases));
+    for (int i = 0; i < e.size(); ++i) REQUIRE(e.status(i) == status::success);
+    return e;
+}
+template <class Model>
+void check_bits(const ensemble<Model>& found, const ensemble<Model>& wanted, bool reversed = false) {
+    for (int c = 0; c < Model::n_state; ++c)
+        for (int i = 0; i < wanted.size(); ++i)
+            CHECK(found.state(c)[reversed ? wanted.size() - 1 - i : i] == wanted.state(c)[i]);
+}
+
 }  // namespace
 
 TEST_CASE("a delayed equation follows the method of steps, with a delay for each instance") {
@@ -150,6 +217,38 @@ TEST_CASE("a delay that depends on the state: jumps of the past are located") {
         CHECK(e.state(logarithm::y)[i] == Approx(y).epsilon(5e-9));
     }
 }
+TEST_CASE("the polynomial of a step that is much shorter than the way to a time beyond a jump says nothing of it") {
+    namespace detail = myriad::detail;
+    // y = t up to 1; a step of 1e-9, with errors of 1e-3 in it; a jump; and, again before a jump, another short step
+    constexpr int slots = 8, terms = 6, fields = 1 + terms;
+    const double shortest = 1e-9;
+    double ring[slots * fields + 3] = {};
+    const double starts[] = {0, 1, 1 + shortest, 1 + shortest, 1 + 2 * shortest, 1 + 2 * shortest};
+    const double values[][terms] = {{0, 1}, {1, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3}, {1}, {5, 0, 0, 0, 0, 1e-3}, {5}};
+    for (int k = 0; k < 6; ++k) {
+        ring[k * fields] = starts[k];
+        for (int power = 0; power < terms && k < 5; ++power) ring[k * fields + 1 + power] = values[k][power];
+    }
+    detail::past_view<logarithm, double> past = {};
+    past.ring = ring;
+    past.stride = 1;
+    past.slots = slots;
+    past.terms = terms;
+    past.row = fields;
+    past.reached = 2;
+    past.lane[0].steps = 5;
+    const auto seen_before = [&](int jump, double time) {
+        past.lane[0].before[0] = jump;
+        past.lane[0].forget();
+        const auto& seen = past.look(0, 0, time, 3.0);
+        return past.value_in(0, 0, seen, time);
+    };
+    CHECK(std::abs(seen_before(2, 1.5) - 1.5) < 1e-12);                // the step before the short one goes on
+    CHECK(std::abs(seen_before(2, 1 + 2 * shortest) - 1.062) < 1e-6);  // near by, the short one does: 1 + 62e-3
+    CHECK(std::abs(seen_before(4, 1.5) - (5 + 1e-3 * 32768)) < 1e-4);  // behind a jump it does to eight lengths
+    CHECK(seen_before(5, 1.5) == 5);                                   // a step without length is what was set there
+}
+
 TEST_CASE("a delay may vanish, at the start or everywhere") {
     ensemble<pantograph> e(5);
     for (int i = 0; i < 5; ++i) e.parameter(pantograph::q)[i] = 0.2 + 0.2 * i;
@@ -159,6 +258,22 @@ TEST_CASE("a delay may vanish, at the start or everywhere") {
     for (int i = 0; i < 5; ++i) {
         INFO("instance " << i);
         CHECK(e.status(i) == status::success);
+        CHECK(e.state(pantograph::y)[i] == Approx(std::exp(-5.0)).epsilon(1e-7));
+        CHECK(e.accepted_steps()[i] < 60);
+    }
+}
+TEST_CASE("events see the past within their step, and the start of a phase what is there already") {
+    using model = delays::watched_pantograph;
+    ensemble<model> e(5);
+    for (int i = 0; i < 5; ++i) e.parameter(pantograph::q)[i] = 0.2 + 0.2 * i;
+    e.state(pantograph::y) = 1;
+    e.time_domain(0, 5);
+    solve<myriad::verner_7>(tests::test_device(), e, tolerance(1e-9));
+    for (int i = 0; i < 5; ++i) {
+        INFO("instance " << i);
+        CHECK(e.status(i) == status::success);
+        CHECK(e.accessory(model::at_begin)[i] == 1);
+        CHECK(e.accessory(model::seen)[i] == Approx(std::log(2.0) / (0.2 + 0.2 * i)).epsilon(1e-7));
         CHECK(e.state(pantograph::y)[i] == Approx(std::exp(-5.0)).epsilon(1e-7));
         CHECK(e.accepted_steps()[i] < 60);
     }
@@ -279,13 +394,17 @@ TEST_CASE("the past lasts from call to call and from phase to phase") {
         CHECK_THROWS_WITH(solve<myriad::runge_kutta_4>(tests::test_device(), e, step(0.01)), Contains("same method"));
     }
 }
-TEST_CASE("neighbours and their order change no bit of an instance with delays") {
-    auto e = decaying(13, 10);
-    solve<myriad::dormand_prince_5>(tests::test_device(), e, tolerance(1e-7));
-    auto reversed = decaying(13, 10);
-    for (int i = 0; i < 13; ++i) reversed.parameter(decay::tau)[i] = e.parameter(decay::tau)[12 - i];
-    solve<myriad::dormand_prince_5>(tests::test_device(), reversed, tolerance(1e-7));
-    for (int i = 0; i < 13; ++i) CHECK(reversed.state(decay::y)[12 - i] == e.state(decay::y)[i]);
+TEMPLATE_TEST_CASE("calls, neighbours, order and threads change no bit of instances whose rings are full", "",
+                   (std::pair<decay, myriad::dormand_prince_5>), (std::pair<decay, myriad::runge_kutta_4>),
+                   (std::pair<echo, myriad::dormand_prince_5>), (std::pair<echo, myriad::runge_kutta_4>),
+                   (std::pair<pantograph, myriad::verner_7>), (std::pair<pantograph, myriad::cash_karp>),
+                   (std::pair<exponential, myriad::rodas_5p>)) {
+    using Model = typename TestType::first_type;
+    using Method = typename TestType::second_type;
+    const auto at_once = after<Model, Method>({24});
+    check_bits(after<Model, Method>({1, 7, 16}), at_once);
+    check_bits(after<Model, Method>(std::vector<int>(24, 1)), at_once);
+    check_bits(after<Model, Method>({5, 19}, 2, true), at_once, true);
 }
 TEST_CASE("samples of a delayed equation") {
     auto e = decaying(3, 4);
@@ -308,6 +427,38 @@ TEST_CASE("delays that cannot be integrated have a status of their own") {
         CHECK(e.status(0) == status::success);
         CHECK(e.status(1) == status::history_overflow);
         CHECK(e.t()[1] < 1.5);
+    }
+    SECTION("what was before the beginning is never lost") {
+        auto e = decaying(1, 0.75);
+        e.parameter(decay::tau)[0] = 2;
+        options o = step(0.01);
+        o.history_steps = 8;
+        solve<myriad::runge_kutta_4>(tests::test_device(), e, o);
+        CHECK(e.status(0) == status::success);
+        CHECK(e.state(decay::y)[0] == Approx(decay_at(0.75, 2)));
+        // A call that goes on looks beyond what is kept of it as well.
+        e.time_domain(0.75, 1.5);
+        solve<myriad::runge_kutta_4>(tests::test_device(), e, o);
+        CHECK(e.status(0) == status::success);
+        CHECK(e.state(decay::y)[0] == Approx(decay_at(1.5, 2)));
+        e.time_domain(1.5, 3);
+        solve<myriad::runge_kutta_4>(tests::test_device(), e, o);
+        CHECK(e.status(0) == status::history_overflow);
+        CHECK(e.t()[0] < 2.1);
+    }
+    SECTION("a step that the ring has lost is not seen, though it was seen last") {
+        for (const std::int64_t kept : {1024, 128}) {
+            ensemble<delays::frozen> e(1);
+            e.state(delays::frozen::y) = 1;
+            e.time_domain(0, 3);
+            options o = tolerance(1e-9);
+            o.maximum_step = 0.01;
+            o.history_steps = kept;
+            solve<myriad::dormand_prince_5>(tests::test_device(), e, o);
+            CHECK(e.status(0) == (kept == 1024 ? status::success : status::history_overflow));
+            // Up to its end the solution is the right one.
+            CHECK(e.state(delays::frozen::y)[0] == Approx(57.0 / 32 + 1.25 * (e.t()[0] - 0.75)).margin(1e-8));
+        }
     }
     SECTION("of which hardly anything is kept") {
         auto e = decaying(1, 4);
@@ -338,6 +489,42 @@ TEST_CASE("delays that cannot be integrated have a status of their own") {
         solve<myriad::dormand_prince_5>(tests::test_device(), e, tolerance(1e-6));
         CHECK(e.status(0) == status::invalid_delay);
     }
+}
+TEST_CASE("a call that ends where the beginning arrives has not lost it") {
+    for (const double tau : {2.0, 1.1, 0.7, 0.3}) {
+        for (const double begin : {0.0, 0.1, -3.3, 1e-6}) {
+            INFO("delay " << tau << " from " << begin);
+            auto e = decaying(1, 1);
+            e.parameter(decay::tau)[0] = tau;
+            e.time_domain(begin, begin + tau);
+            options o = step(0.01);
+            o.history_steps = 8;
+            solve<myriad::runge_kutta_4>(tests::test_device(), e, o);
+            CHECK(e.status(0) == status::success);
+            CHECK(e.state(decay::y)[0] == Approx(1 - tau).margin(1e-12));
+        }
+    }
+}
+TEST_CASE("a delay is as long as a fixed step up to rounding") {
+    for (const double tau : {2.0, 1.1, 0.7, 0.3, 0.1}) {
+        for (const double begin : {1e-6, 1e-9, -1.0, -2.1}) {
+            INFO("delay " << tau << " from " << begin);
+            auto e = decaying(1, 1);
+            e.parameter(decay::tau)[0] = tau;
+            e.time_domain(begin, begin + 10 * tau);
+            solve<myriad::runge_kutta_4>(tests::test_device(), e, step(tau));
+            CHECK(e.status(0) == status::success);
+        }
+    }
+}
+TEST_CASE("an infinite delay sees the beginning") {
+    ensemble<delays::rare> e(1);
+    e.parameter(delays::rare::r) = 0;
+    e.state(delays::rare::y) = 1;
+    e.time_domain(0, 2);
+    solve<myriad::runge_kutta_4>(tests::test_device(), e, step(0.01));
+    CHECK(e.status(0) == status::success);
+    CHECK(e.state(delays::rare::y)[0] == Approx(3));
 }
 TEST_CASE("history_steps is an option of models with delays") {
     auto e = decaying(1, 1);

@@ -220,6 +220,41 @@ TEST_CASE("an exponent that moves in one direction does not spoil the power of a
     CHECK(is_finite(number(power.value)));
 }
 
+TEST_CASE("a quotient by what overflows has the derivative zero") {
+    using second = dual<dual<double>>;
+    using several = dual<double, partials<double, 2>>;
+    const auto sigmoid = [](const auto& x) { return 1.0 / (1.0 + exp(x)); };
+    const auto weighted = [](const auto& x) { return x / (1.0 + exp(x)); };
+    for (const double at : {710.0, 800.0, 1e300}) {
+        const dual<double> x(at, 3.0);
+        CHECK(sigmoid(x).derivative == 0);
+        CHECK(weighted(x).derivative == 0);
+        CHECK(sigmoid(dual<double, partial<double>>(at, 3.0)).derivative == 0);
+        const several both(at, {{partial<double>(3.0), partial<double>(-2.0)}});
+        for (int i = 0; i < 2; ++i) CHECK(sigmoid(both).derivative.in[i] == 0);
+        for (int i = 0; i < 2; ++i) CHECK(weighted(both).derivative.in[i] == 0);
+        const second twice(dual<double>(at, 1.0), dual<double>(1.0, 0.0));
+        CHECK(sigmoid(twice).derivative.derivative == 0);
+        const dual<pack<double, 4>> lanes{pack<double, 4>(at), pack<double, 4>(3.0)};
+        CHECK(get_lane(sigmoid(lanes), 2).derivative == 0);
+    }
+    check_close(sigmoid(dual<double>(600.0, 1.0)).derivative / std::exp(-600.0), -1.0L);
+    CHECK(std::fabs(sigmoid(dual<double>(708.0, 1000.0)).derivative) < 1e-290);  // of which exp's is infinite alone
+    CHECK(std::fabs(weighted(dual<double>(708.0, 1000.0)).derivative) < 1e-290);
+    CHECK(std::isnan((1.0 / dual<double>(std::nan(""), 1.0)).derivative));
+    CHECK(std::isinf((1.0 / dual<double>(0.0, 1.0)).derivative));
+}
+
+TEST_CASE("quotients whose parts are nearly too large have their derivatives, and lose none that is not") {
+    const auto ratio = [](const auto& x) { return exp(x) / (1.0 + exp(x)); };
+    CHECK(std::fabs(ratio(dual<double>(690.0, 1000.0)).derivative) < 1e-9);
+    const dual<double, partials<double, 2>> both(690.0, {{partial<double>(1000.0), partial<double>(3.0)}});
+    for (int i = 0; i < 2; ++i) CHECK(std::fabs(ratio(both).derivative.in[i]) < 1e-9);
+    const double infinity = std::numeric_limits<double>::infinity();
+    CHECK(std::isinf((1.0 / (1.0 + dual<double>(1.0, infinity))).derivative));
+    CHECK(std::isnan((1.0 / dual<double>(1e300, std::nan(""))).derivative));
+}
+
 TEST_CASE("comparisons look at values alone, and select takes values with their derivatives") {
     const dual<double> a(1, 10);
     const dual<double> b(2, -20);

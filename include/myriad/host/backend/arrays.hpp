@@ -113,7 +113,8 @@ void for_each_array(any_arguments<R>& a, Visit&& visit) {
     const std::int64_t slots = a.history.slots;
     const int kept = a.model->n_kept;
     const auto past = array_access::update;
-    visit_array(a.history.ring, history_numbers(slots, kept, a.history.terms), past, array_kind::bookkeeping);
+    visit_array(a.history.ring, history_numbers(slots, kept, a.history.terms, a.model->jump_numbers), past,
+                array_kind::bookkeeping);
     visit_array(a.history.jumps, slots, past, array_kind::bookkeeping);
     visit_array(a.history.place, 2, past, array_kind::bookkeeping);
     const std::int64_t capacity = a.sample.capacity;

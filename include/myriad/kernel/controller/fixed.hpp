@@ -110,6 +110,7 @@ struct fixed_stepping {
                 set_lane(s.steps.time_low, i,
                          get_lane(s.steps.time_low, i) + (get_lane(s.h, i) - get_lane(s.steps.step, i)));
                 move(i, get_lane(t1, i));
+                if constexpr (on_path) s.steps.begin_again(i, args.noise);
             });
         }
         if constexpr (shows_time) {
@@ -133,11 +134,12 @@ struct fixed_stepping {
 private:
     static constexpr bool on_path = stochastic_method<Method>;
 
-    /// Where lane i begins on its path. Where phases go back to t_begin, each has a path of its own.
+    /// Where lane i begins on its path. Where phases go back to t_begin, each has a path of its own; with events too.
     MYRIAD_FUNCTION void begin_path(int i, R t) {
         const std::int64_t index = s.instance[i];
-        s.steps.path.set(i, args.first_index + index, args.carry_time ? 0 : args.phase[index]);
-        detail::set_place(s.steps.from, i, place_at(i, t));
+        const bool goes_on = args.carry_time && !has_events<Model>;  // an event may end a phase anywhere
+        s.steps.path.set(i, args.first_index + index, goes_on ? 0 : args.phase[index]);
+        detail::set_place(s.steps.from, i, has_events<Model> ? path_place<R>{0, 0} : place_at(i, t));
     }
     /// The place of a time on the path of lane i, which counts from the instance's t_begin.
     MYRIAD_FUNCTION path_place<R> place_at(int i, R t) const {
@@ -145,10 +147,10 @@ private:
         return detail::place_of_length(t - t_begin, args.noise.cell);
     }
     /// The place at the end of a last step of that length. Counted from t_begin, so that roundings to a place do not
-    /// add up; in single precision, where t tells fewer cells apart than steps are counted, from the beginning of the
-    /// step.
+    /// add up; in single precision, where t tells fewer cells apart than steps are counted, and where events have
+    /// begun the path anew, from the beginning of the step.
     MYRIAD_FUNCTION path_place<R> place_of_stop(int i, R length) const {
-        if constexpr (sizeof(R) == sizeof(double)) return place_at(i, stop_of(i));
+        if constexpr (sizeof(R) == sizeof(double) && !has_events<Model>) return place_at(i, stop_of(i));
         return detail::moved(detail::get_place(s.steps.from, i), detail::place_of_length(length, args.noise.cell));
     }
 

@@ -30,6 +30,8 @@
 /// An optimisation barrier: what lies in memory that others might change is written before it and read again after it.
 #define MYRIAD_MEMORY_BARRIER asm volatile("" ::: "memory")
 #if MYRIAD_ON_GPU
+/// Prefetches memory that is soon read into the nearest cache.
+#define MYRIAD_PREFETCH(where) ::myriad::gpu::prefetch(where)
 /// A point where diverged threads of a warp reconverge; all threads that have not exited reach it. The compiler's own
 /// reconvergence points are not enough: threads that took instances one by one were seen never to reconverge.
 #define MYRIAD_RECONVERGE ::myriad::gpu::synchronise_warp(~::myriad::gpu::lane_mask(0))
@@ -49,6 +51,7 @@
 /// a * b rounded, where the compiler would fuse it with an addition: for results that are to be the host's.
 #define MYRIAD_ROUNDED_PRODUCT(a, b) ::myriad::gpu::rounded_product(a, b)
 #else
+#define MYRIAD_PREFETCH(where) __builtin_prefetch(where)
 #define MYRIAD_RECONVERGE static_cast<void>(0)
 #define MYRIAD_UNROLL
 #define MYRIAD_UNROLL_UP_TO(on_gpu, on_cpu)
@@ -90,6 +93,7 @@
 #define MYRIAD_CONSTANT_MEMORY inline constexpr
 #define MYRIAD_OPTIMISATION_BARRIER(value) static_cast<void>(value)
 #define MYRIAD_MEMORY_BARRIER static_cast<void>(0)
+#define MYRIAD_PREFETCH(where) __builtin_prefetch(where)
 #define MYRIAD_RECONVERGE static_cast<void>(0)
 #define MYRIAD_UNROLL_BY(count)
 #define MYRIAD_ROLLED
@@ -104,6 +108,7 @@
 #define MYRIAD_UNROLL_ON_GPU _Pragma("GCC unroll 1")
 #endif
 #define MYRIAD_BACKEND_HEADER "myriad/openmp/run.hpp"
+#define MYRIAD_ADJOINT_HEADER "myriad/openmp/adjoint.hpp"
 #if defined(__AVX512F__)
 #define MYRIAD_TARGET openmp_avx512
 #define MYRIAD_INSTRUCTION_SET avx512

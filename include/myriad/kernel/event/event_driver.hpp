@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "myriad/kernel/event/bridge_driver.hpp"
 #include "myriad/kernel/event/detector.hpp"
 #include "myriad/kernel/event/event_detection.hpp"
 #include "myriad/kernel/event/fired_events.hpp"

@@ -106,23 +106,28 @@ private:
     /// function has a side and is beyond its tolerance, or near the event. One that has not left its surface since its
     /// event must be on the side that it was heading for.
     MYRIAD_FUNCTION bool is_plain(int i, const ends_of_step& step, flags& crossed) const {
+        // Read all at once: on a GPU, one read waits as long as several.
         const auto& own = sides.memory_of(i);
-        const bool seeking = sides.is_locating(i) && own.redo.target != own.redo.none;
-        bool plain = sides.args.sub_samples <= 1 && !(own.open | own.on_jump).any_of();
+        const flags unclear = own.open | own.on_jump, crossed_before = own.redo.crossed;
+        const auto target = own.redo.target;
+        const bool trusts_guesses = own.redo.trusts_guesses(step.h);
+        const bool seeking = sides.is_locating(i) & (target != own.redo.none);
+        bool plain = (sides.args.sub_samples <= 1) & !unclear.any_of();
+        const R located_to = seeking ? own.redo.tolerance[target] : R(0);
         bool alone = seeking, close = false;
         MYRIAD_UNROLL
         for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
             const R tolerance = sides.args.event[j].tolerance, g = abs(step.g1[j]);
             const bool left = sides.e.left.get(j, i), stays = (step.g1[j] > R(0)) == sides.e.above.get(j, i);
-            const bool is_target = seeking && own.redo.target == j;
-            const bool near = is_target && left && g <= own.redo.tolerance[j];
-            plain = plain && tolerance > R(0) && (near || (g > tolerance && (left || stays)));
-            close = close || (near && is_close(g, own.redo.tolerance[j]));
-            alone = alone && left && (is_target || !own.redo.crossed[j]);
+            const bool is_target = seeking & (target == j);
+            const bool near = is_target & left & (g <= located_to);
+            plain = plain & (tolerance > R(0)) & (near | ((g > tolerance) & (left | stays)));
+            close = close | (near & is_close(g, located_to));
+            alone = alone & left & (is_target | !crossed_before[j]);
             if (near) crossed.set(j, false);
         }
         if (!plain) return false;
-        return crossed.any_of() ? !crossed.several() : alone && (close || own.redo.trusts_guesses(step.h));
+        return crossed.any_of() ? !crossed.several() : alone & (close | trusts_guesses);
     }
     /// Whether a better guess is not worth another trial.
     static MYRIAD_FUNCTION bool is_close(R gap, R tolerance) { return gap <= R(arrival_part) * tolerance; }

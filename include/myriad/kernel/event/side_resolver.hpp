@@ -42,10 +42,10 @@ struct side_resolver {
         for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
             const kept_event kept(sides.kept_at(j, i));
             const kept_side kind = kept.kind();
-            const bool fired = kind == kept_side::fired, keeps = fired || kind == kept_side::within;
+            const bool has_fired = kind == kept_side::fired, keeps = has_fired || kind == kept_side::within;
             const R tolerance = max(args.event[j].tolerance, rounding[j]);
             // An event is located only as closely as t resolves, and t may have started anew since.
-            const R band = fired ? max(tolerance, kept.template value_bound<R>()) : keeps ? tolerance : rounding[j];
+            const R band = has_fired ? max(tolerance, kept.template value_bound<R>()) : keeps ? tolerance : rounding[j];
             const bool beyond = abs(g[j]) > band;
             undefined = undefined || g[j] != g[j];
             at_jump.set(j, beyond && kind == kept_side::on_jump);
@@ -53,7 +53,7 @@ struct side_resolver {
             own.lingered[j] = abs(g[j]) > tolerance ? 0 : kept.lingered();
             e.left.set(j, i, own.lingered[j] == 0);
             sides.put_side(j, i, beyond ? sign_of(g[j]) : R(0));
-            own.fired_last.set(j, fired);
+            own.fired_last.set(j, has_fired);
             if (keeps && !beyond) {
                 e.above.set(j, i, kept.above());
                 own.open.set(j, true);

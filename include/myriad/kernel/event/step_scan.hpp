@@ -76,6 +76,7 @@ struct step_scan {
 private:
     /// A turn closer to an end of the step is looked at on the cubic, which is accurate there.
     static constexpr double least_turn = 1.0 / 4096;
+    static constexpr double far_turn = 8;
 
     // A call with its results in memory: inlined, it would take registers of the whole loop.
     static MYRIAD_RARE_FUNCTION void find_values(const ends_of_step* step, R theta, moving* values) {
@@ -84,6 +85,8 @@ private:
 
     /// Sets `place` to the first place between `from` and itself at which a function that moves towards zero at the
     /// first and away from it at the second turns, if there is one: by bisection, since such a function may be flat.
+    /// One that stays so much farther from zero there than it moves from there to both ends of the step is left out:
+    /// only a true turn some seventeen times as deep as that of the cubic would cross.
     MYRIAD_FUNCTION void find_turn(const ends_of_step& step, const reals& side, R from, scanned_part<R, m>* at) const {
         MYRIAD_ROLLED
         for (at->function = 0; at->function < MYRIAD_LENGTH(m); ++at->function) {
@@ -101,6 +104,10 @@ private:
                 const int k = at->function;
                 (side[k] * at->inside[k].derivative < R(0) ? at->low : at->high) = R(0.5) * (at->low + at->high);
             }
+            find_values(&step, at->high, &at->inside);
+            const int k = at->function;
+            const R value = at->inside[k].value, moves = abs(step.g[k] - value) + abs(step.g1[k] - value);
+            if (side[k] * value > R(far_turn) * moves) continue;
             at->place = min(at->place, at->high);
         }
     }

@@ -148,8 +148,9 @@ struct hook_driver {
             s.end_lane(i, ending);
             lay_steps(i);
         });
-        jump(acted, 1);
-        follow_action(due & differs(before, s.data), before);
+        const mask changed = due & differs(before, s.data);
+        jump(acted & !changed, 1);
+        follow_action(changed, before);
     }
 
     /// Lets the jumps of the past arrive that are due, after all actions at this instant: the slope is another from
@@ -163,9 +164,9 @@ struct hook_driver {
         mask arrived = mask(false), jumped = mask(false);
         for_each_lane(due, [&](int i) MYRIAD_LAMBDA {
             const int level = breaks.arrive(i);
-            if (level == breaks.never) return;
+            if (level == no_jump) return;
             set_lane(arrived, i, true);
-            set_lane(jumped, i, level == 1);  // else functions of delayed values go on, and may cross zero here
+            set_lane(jumped, i, level <= 1);  // else functions of delayed values go on, and may cross zero here
             stop_driver<Model, Method, S>{args, s}.update(i);
             lay_steps(i);
         });

@@ -32,7 +32,7 @@ struct integrator {
     using trial_type = trial_step<Method, S, n>;
     using stepping_type = stepping<Model, Method, S>;
     using event_driver_type = event_driver<Model, Method, S>;
-    using detection_type = event_detection<S, m>;
+    using detection_type = typename event_driver_type::detection;
     using observers_type = observers<Model, Method, S>;
 
     const kernel_arguments<Model, R>& args;
@@ -58,7 +58,7 @@ struct integrator {
             take_step(trial);
             detection_type detected;
             if constexpr (has_events<Model>) {
-                detected = events.detect(detail::evaluate_events<Model>(end_time(), trial.y, s.data));
+                detected = events.detect(events_at_end(trial));
                 if (waits(detected, events)) continue;
             }
             ++s.iteration;
@@ -183,9 +183,26 @@ struct integrator {
         }
     }
 
+    /// The event functions at the end of the trial. Those that read the past within it see the trial's own interpolant.
+    MYRIAD_FUNCTION vec<S, m> events_at_end(const trial_type& trial) {
+        if constexpr (has_delays<Model> && is_adaptive<Method>) {
+            const mask known = detail::past_is_known(s.data);
+            const vec<S, m> g = detail::evaluate_events<Model>(end_time(), trial.y, s.data);
+            const mask open = s.running() & known & !detail::past_is_known(s.data);
+            if (!MYRIAD_UNLIKELY(any(open))) return g;
+            trial_iteration<Model, Method, S>{args, s}.show(trial, end_time(), open);
+            const vec<S, m> seen = detail::evaluate_events<Model>(end_time(), trial.y, s.data);
+            trial_iteration<Model, Method, S>{args, s}.is_within(open);
+            return seen;
+        } else {
+            return detail::evaluate_events<Model>(end_time(), trial.y, s.data);
+        }
+    }
+
     /// Whether the trial, in which an event may begin, is to be taken again when more threads of the warp have one.
     MYRIAD_FUNCTION bool waits(const detection_type& detected, event_driver_type& events) {
-        if constexpr (is_pack<S> || team_size < Model >> 1) {  // a team has one for all its threads
+        if constexpr (is_pack<S> || stochastic_method<Method> ||
+                      team_size < Model >> 1) {  // a team has one for all its threads
             return false;
         } else {
             constexpr auto interval = stepping_type::stagnation_interval;
@@ -206,7 +223,7 @@ struct integrator {
         const auto end_stuck = [&](const mask& failed, mask still) MYRIAD_LAMBDA {
             // A flight between events may be shorter than the resolution of t.
             still = still & !events.locating();
-            for_each_lane(failed | still, [&](int i) MYRIAD_LAMBDA { s.end_lane(i, failure_of(i)); });
+            for_each_lane(failed | still, [&](int i) MYRIAD_LAMBDA { s.end_lane(i, failure_of(i, events)); });
             return still;
         };
         const step_decision<S> decided = steps.judge(trial, end_time(), defined, end_stuck);
@@ -253,7 +270,10 @@ private:
     static constexpr bool shows_step = has_after_step<Model> || has_after_event<Model> || has_after_stop<Model> ||
                                        has_triggers<Model> || has_finalise<Model>;
     /// Why the trial of lane i, which is stuck, failed.
-    MYRIAD_FUNCTION status failure_of(int i) {
+    MYRIAD_FUNCTION status failure_of(int i, [[maybe_unused]] const event_driver_type& events) {
+        if constexpr (stochastic_method<Method> && has_events<Model>) {
+            if (events.is_stuck(i)) return status::event_accumulation;
+        }
         if constexpr (has_delays<Model>) {
             const auto trouble = s.data.past.lane[i].trouble;
             if (trouble & past_trouble::lost) return status::history_overflow;

@@ -204,7 +204,9 @@ private:
         for (int j = 0; j < MYRIAD_LENGTH(m); ++j) set_lane(s.data.event_count[j], i, 0);
         stepping_type steps{args, s};
         steps.choose_step(i, phase);
+        [[maybe_unused]] R past_until = args.t[index];
         if constexpr (has_initialise<Model>) {
+            if constexpr (has_delays<Model>) static_cast<void>(begin_past(i, past_until));  // which it may read
             // What has acted at this time is told by the times of stops that were its own then.
             if constexpr (has_stops<Model>) {
                 if (carry_on) stop_driver<Model, Method, S>{args, s}.begin(i, true);
@@ -218,8 +220,7 @@ private:
             if (has_initialise<Model> || phase > 0) make_consistent(i);  // other initial values the host has checked
         }
         const R t = get_lane(s.data.t, i);
-        if constexpr (has_delays<Model>)
-            s.end_lane(i, breaking_points<Model, Method, S>{args, s}.begin(i, phase == 0, t - args.t[index]));
+        if constexpr (has_delays<Model>) s.end_lane(i, begin_past(i, past_until));
         args.t[index] = t;
         observers<Model, Method, S>{args, s, observed}.begin(i);  // stop times may read what they write
         if constexpr (has_known_stops<Model>) {
@@ -245,6 +246,13 @@ private:
             if (s.ending[i] == status::success) act_on_stops(i);
         }
         return s.ending[i] == status::success && t != get_lane(s.data.t_end, i);
+    }
+
+    /// The past of lane i begins, or moves to where the phase does, from where it ended or was moved to before.
+    [[nodiscard]] MYRIAD_FUNCTION status begin_past(int i, R& until) {
+        const R now = get_lane(s.data.t, i), moved = now - until;
+        until = now;
+        return breaking_points<Model, Method, S>{args, s}.begin(i, get_lane(s.data.phase, i) == 0, moved);
     }
 
     /// Calls after_stop where a phase begins at a stop time, after its first sample.

@@ -20,7 +20,7 @@ inline constexpr bool is_of_units<coupled_units<Unit, units>> = true;
 /// Whether a team can integrate a model by a method. Others are integrated by one thread per instance.
 template <class Model, class Method>
 constexpr bool runs_in_teams() {
-    return is_of_units<Model> && !rosenbrock_method<Method>;
+    return is_of_units<Model> && !rosenbrock_method<Method> && !has_delays<Model>;
 }
 
 /// Most states that one thread takes. Lorenz 96 by tsitouras_5, 131 072 instances, NVIDIA H100, ms for one thread and

@@ -32,24 +32,31 @@ struct trial_iteration {
                                     S(detail::absolute_tolerance_of(args, c)));
                 same = same & (abs(trial.y[c] - before[c]) <= S(R(converged)) * scale);
             }
-            for_each_lane(open & same, [&](int i) MYRIAD_LAMBDA {
-                s.data.past.lane[i].trouble &= static_cast<std::uint8_t>(~past_trouble::not_yet);
-            });
+            is_within(open & same);
             open = open & !detail::past_is_known(s.data);
         }
         if (!any(open) || turns == most) return false;
         ++turns;
         before = trial.y;
-        const mask none = mask(false);
-        detail::write_step<Model, Method, S>(s.data.past, accepted_step<Model, Method, S>{s, trial, t1, open, none});
-        s.slopes.invalidate_end();
-        for_each_lane(open, [&](int i) MYRIAD_LAMBDA {
-            s.data.past.lane[i].has_trial = true;
-            s.data.past.lane[i].forget();
-            s.data.past.lane[i].trouble = past_trouble::none;
-        });
+        show(trial, t1, open);
         s.extra_evaluations = count_where(open, s.extra_evaluations, Method::stages);
         return true;
+    }
+    /// Lets lookups see the trial's own interpolant, in some lanes.
+    MYRIAD_FUNCTION void show(const trial_step<Method, S, n>& trial, const S& t1, const mask& lanes) const {
+        s.slopes.invalidate_end();  // what is known may be that of the trial before
+        const mask none = mask(false);
+        detail::write_step<Model, Method, S>(s.data.past, accepted_step<Model, Method, S>{s, trial, t1, lanes, none});
+        for_each_lane(lanes, [&](int i) MYRIAD_LAMBDA {
+            s.data.past.lane[i].has_trial = true;
+            s.data.past.lane[i].trouble = past_trouble::none;
+        });
+    }
+    /// What was looked up within the trial is to be believed.
+    MYRIAD_FUNCTION void is_within(const mask& lanes) const {
+        for_each_lane(lanes, [&](int i) MYRIAD_LAMBDA {
+            s.data.past.lane[i].trouble &= static_cast<std::uint8_t>(~past_trouble::not_yet);
+        });
     }
 };
 

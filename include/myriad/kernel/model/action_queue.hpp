@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <type_traits>
+#include <utility>
 
 #include "myriad/kernel/core/macros.hpp"
 #include "myriad/kernel/core/vec.hpp"
@@ -41,8 +42,8 @@ struct basic_action_queue {
     }
     /// Puts an action, which runs at `time`, or now if that has passed. Times that differ by sixteen roundings or less
     /// are one, as rounding is not to decide which action comes first. Returns whether there was room.
-    template <class Lane, class R>
-    static MYRIAD_FUNCTION bool put(Lane& lane, int action, const R& time, const vec<R, most_values>& value = {}) {
+    template <class Lane, class R, class Kept = std::remove_cvref_t<decltype(std::declval<Lane&>().accessory[0])>>
+    static MYRIAD_FUNCTION bool put(Lane& lane, int action, const R& time, const vec<Kept, most_values>& value = {}) {
         using Real = std::remove_cvref_t<decltype(lane.t)>;
         const Layout at{};
         bool has_room = false;

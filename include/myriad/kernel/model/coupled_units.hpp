@@ -10,21 +10,12 @@
 #include "myriad/kernel/core/static_for.hpp"
 #include "myriad/kernel/core/status.hpp"
 #include "myriad/kernel/core/team.hpp"
+#include "myriad/kernel/model/delays_of_units.hpp"
 #include "myriad/kernel/model/forwarded_hooks.hpp"
 #include "myriad/kernel/model/unit_hooks.hpp"
 #include "myriad/kernel/scalar/math.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
-
-/// The number of threads of a GPU that integrate an instance, as units declare it; zero if the library is to choose.
-template <class Unit>
-constexpr int declared_team() {
-    if constexpr (requires { Unit::threads_per_instance; }) {
-        return Unit::threads_per_instance;
-    } else {
-        return 0;
-    }
-}
 
 /// Refuses functions of units with a wrong signature, and shows the right one. The arguments' values are unused.
 template <class Unit, class R, class T, class States, class Inputs>
@@ -166,7 +157,7 @@ constexpr bool check_units() {
     static_assert(!has_jacobian<Unit>, "coupled units have no jacobian: it comes from rhs by dual numbers");
     constexpr int team = declared_team<Unit>();
     static_assert(team == 0 || is_size_of_team(team), "threads_per_instance is not a power of two from 1 to 256");
-    return check_couplings<Unit, units>();
+    return check_delays_of_units<Unit>() && check_couplings<Unit, units>();
 }
 
 }  // namespace myriad::detail
@@ -183,7 +174,7 @@ namespace myriad {
 /// slopes. Hooks are called for all units in their order, and the strongest action counts; `after_event` for the unit
 /// whose event it is.
 template <class Unit, int units>
-struct coupled_units : detail::functions_of_units<Unit, units> {
+struct coupled_units : detail::delays_of_units<Unit, units, detail::functions_of_units<Unit, units>> {
     static_assert(detail::check_units<Unit, units>());
 
     using unit_type = Unit;               ///< what is written for one unit

@@ -177,6 +177,8 @@ constexpr bool check_hooks(const vec<R, n_state<Model>>* y = nullptr, const inpu
     }
     if constexpr (has_delays<Model> && has_delayed_state<Model>) {
         static_assert(states_of_delays_exist<Model>(), "delayed_state names no state of the model");
+        static_assert(same_lags_are_first<Model>(),
+                      "same_lag has a wrong result: it is the first of the delayed values with the lag of that one");
         static_assert(
             requires {
                 { Model::template lag<R>(int{}, *p) } -> std::same_as<R>;
@@ -187,6 +189,11 @@ constexpr bool check_hooks(const vec<R, n_state<Model>>* y = nullptr, const inpu
             "lag has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static R lag(int delayed, const "
             "auto& p)` or, if it depends on time or state, `R lag(int delayed, const R& t, const myriad::vec<R, "
             "n_state>& y, const auto& p)`, and public");
+    }
+    if constexpr (has_delayed_slopes<Model>) {
+        MYRIAD_CHECK_CALL((Model::is_delayed_slope(int{})), std::same_as<bool>,
+                          "is_delayed_slope has a wrong signature: it must be `MYRIAD_FUNCTION static bool "
+                          "is_delayed_slope(int delayed)`, and public")
     }
     if constexpr (has_history<Model>) {
         MYRIAD_CHECK_CALL((Model::template history<R>(int{}, R{}, *p)), std::same_as<R>,

@@ -212,6 +212,7 @@ MYRIAD_FUNCTION void for_each_member(Visit&& visit, Data&... d) {
     if constexpr (has_delays<Model>) {
         visit(member_use<false, false>{}, d.delayed...);
         visit(member_use<false, false>{}, d.past...);
+        visit(member_use<jump_numbers<Model> != 0, false>{}, d.later...);
     }
     visit(member_use<false, false>{}, d.h...);
     visit(member_use<false, false>{}, d.index...);

@@ -16,7 +16,8 @@ struct model_numbers {
     MYRIAD_COMPONENT_KINDS(MYRIAD_DECLARE_NUMBER)
 #undef MYRIAD_DECLARE_NUMBER
     bool writes_parameters, writes_time_domain, has_diffusion;
-    std::int32_t n_kept;  ///< states whose past is kept, in models with delays
+    std::int32_t n_kept;        ///< states whose past is kept, in models with delays
+    std::int32_t jump_numbers;  ///< numbers kept of each jump of the past
 
     constexpr bool operator==(const model_numbers&) const = default;
 };
@@ -50,6 +51,7 @@ inline constexpr model_numbers numbers_of{
     .writes_time_domain = writes_time_domain<Model>,
     .has_diffusion = has_diffusion<Model>,
     .n_kept = n_kept<Model>,
+    .jump_numbers = jump_numbers<Model>,
 };
 
 }  // namespace myriad::detail

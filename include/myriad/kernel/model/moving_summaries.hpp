@@ -5,7 +5,7 @@
 
 #include "myriad/kernel/core/static_for.hpp"
 #include "myriad/kernel/model/summaries.hpp"
-#include "myriad/kernel/model/tangent_lane.hpp"
+#include "myriad/kernel/model/varied_past.hpp"
 
 namespace myriad::detail {
 
@@ -68,9 +68,10 @@ private:
     MYRIAD_FUNCTION static void each(auto& wrapped, const vec<R, count * n>& v, const vec<R, count>& dt, auto&& f) {
         static_for<0, count>([&](auto i) MYRIAD_LAMBDA {
             constexpr int d = decltype(i)::value;
-            const auto q = Model::template observe<dual<R>>(dual<R>(wrapped.t, dt[d]),
-                                                            along(part<n>(wrapped.y), part<n>(v, d * n)),
-                                                            detail::inputs_along<Model, Directions, d, R>(wrapped));
+            const dual<R> t(wrapped.t, dt[d]);
+            const vec<dual<R>, n> y = along(part<n>(wrapped.y), part<n>(v, d * n));
+            const auto q =
+                Model::template observe<dual<R>>(t, y, detail::inputs_along<Model, Directions, d, R>(wrapped, t, y));
             static_for<0, n_summary<Model>>([&](auto r) MYRIAD_LAMBDA {
                 constexpr unmarked_summary what = summary_at<Model, decltype(r)::value>;
                 if constexpr (what.kind != over_phase::time_of_maximum && what.kind != over_phase::time_of_minimum)

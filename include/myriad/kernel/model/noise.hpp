@@ -104,14 +104,26 @@ constexpr bool check_noise() {
         static_assert(n_wiener<Model> <= most_processes<R>,
                       "the model has more than 256 Wiener processes, or 512 in single precision: more than the "
                       "counters of a path have room for");
-        static_assert(!has_events<Model>,
-                      "a model with a diffusion has no events yet: its paths are too rough to locate them; look for a "
-                      "condition at the ends of steps, in after_step");
+        static_assert(!has_triggers<Model>,
+                      "a model with a diffusion has no triggers yet: its paths are too rough for conditions that come "
+                      "to hold; give it events, or look for a condition at the ends of steps, in after_step");
         static_assert(!writes_time_domain<Model>,
                       "a model with a diffusion may not declare writes_time_domain: its paths count time from t_begin");
-        static_assert(!has_summaries<Model>,
-                      "a model with a diffusion has no summaries yet: between two steps its paths are not known");
+        static_assert(
+            !summarises_any<Model, over_phase::integral>,
+            "a model with a diffusion has no integrals over a phase yet: give an integral a state of its own");
+        static_assert(!has_summaries<Model> || !has_events<Model>,
+                      "a model with a diffusion has no extrema over a phase beside events yet: an event and an extreme "
+                      "would not know of each other within a step; take extrema in after_step");
         if constexpr (stochastic_method<Method>) {
+            static_assert((!has_events<Model> && !has_summaries<Model>) || Method::strong_order != 0,
+                          "this method follows no path, so that between the ends of a step there is nothing for an "
+                          "event or an extreme to be found on: use euler_maruyama, or another method with a strong "
+                          "order");
+            static_assert(
+                (!has_events<Model> && !has_summaries<Model>) || !uses_jacobian<Method>,
+                "this method is for steps in which a stiff drift undoes the noise, and events and extrema are "
+                "found within steps as if it did not: use euler_maruyama with steps that resolve the drift");
             if constexpr (Method::noise == noise_taken::additive)
                 static_assert(
                     is_additive<Model>,

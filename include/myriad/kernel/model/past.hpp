@@ -10,11 +10,25 @@
 
 #include "myriad/kernel/core/vec.hpp"
 #include "myriad/kernel/model/concepts.hpp"
+#include "myriad/kernel/model/delay_loop.hpp"
 #include "myriad/kernel/model/past_layout.hpp"
+#include "myriad/kernel/scalar/dual.hpp"
 #include "myriad/kernel/scalar/math.hpp"
 #include "myriad/kernel/scalar/select.hpp"
 
+namespace myriad::inline MYRIAD_TARGET {
+template <class Model, class S>
+struct inputs;
+}
+
 namespace myriad::detail::inline MYRIAD_TARGET {
+
+/// Whether lags depend on parameters and shared values alone: `lag(j, p)`. The jumps of the past then arrive at times
+/// that are known.
+template <class Model, class S>
+concept has_constant_lags = has_delays<Model> && requires(const inputs<Model, S>& p) {
+    Model::template lag<S>(0, p);
+};
 
 /// Why a lookup of a trial step is not to be believed.
 struct past_trouble {
@@ -28,9 +42,9 @@ struct past_trouble {
 template <class R>
 struct seen_step {
     std::int32_t number;         // -1: what was before the beginning
-    R start, end, per_length;    // its times; none lies between them before the beginning, and once it is forgotten
-    R linear, quadratic, cubic;  // and the value at the start: of the cubic polynomial
-    R value;
+    R start, end, per_length;    // its times; none lies between them once it is forgotten, nor in a trial
+    R linear, quadratic, cubic;  // of the cubic polynomial
+    R value;                     // at its start; before the beginning everywhere
 
     MYRIAD_FUNCTION void forget() {
         start = infinity_of<R>;
@@ -42,7 +56,7 @@ struct seen_step {
 /// The past of one lane. Steps are numbered from the beginning; step k is in slot k modulo their number.
 template <class Model, class R>
 struct lane_past {
-    static constexpr int lags = n_delayed<Model>;
+    static constexpr int values = n_delayed<Model>, lags = n_lag<Model>;
     static constexpr std::int32_t none = std::numeric_limits<std::int32_t>::max();
 
     std::int64_t instance;
@@ -50,15 +64,26 @@ struct lane_past {
     bool begins;                // the next begins anew: what it begins with is not the end of the one before
     bool resumes;               // it may: a phase has begun, or a hook has changed something
     bool has_trial;             // the one after them holds the trial that is iterated
-    std::int32_t from[lags];    // of each delayed value: the first step it may see now; -1: what was before
-    std::int32_t before[lags];  // and the first that it must not see yet, a jump; or none
-    mutable seen_step<R> seen[lags];
+    std::int32_t from[lags];    // of each lag: the first step that may be seen now; -1: what was before
+    std::int32_t before[lags];  // and the first that must not be seen yet, a jump; or none
+    mutable seen_step<R> seen[values];
     mutable std::uint8_t trouble;
 
-    /// What may be seen has changed.
+    /// What may be seen has changed, of all delayed values or of those with lag g.
     MYRIAD_FUNCTION void forget() const {
-        MYRIAD_UNROLL
-        for (int j = 0; j < lags; ++j) seen[j].forget();
+        detail::for_each_delayed<Model>([&](auto j) MYRIAD_LAMBDA { seen[j].forget(); });
+    }
+    template <class G>
+    MYRIAD_FUNCTION void forget_lag(G g) const {
+        detail::for_each_delayed<Model>([&](auto j) MYRIAD_LAMBDA {
+            if (number_of_lag<Model>(j) == g) seen[j].forget();
+        });
+    }
+    /// The ring has lost the steps before this one.
+    MYRIAD_FUNCTION void forget_before(std::int32_t oldest) const {
+        detail::for_each_delayed<Model>([&](auto j) MYRIAD_LAMBDA {
+            if (seen[j].number >= 0 && seen[j].number < oldest) seen[j].forget();
+        });
     }
 };
 
@@ -69,7 +94,7 @@ struct past_view {
     static constexpr int lanes = lanes_of<S>;
 
     // Field f of slot s of instance i is at ring[(s * fields + f) * stride + i]; behind the slots are the initial
-    // states and the time by which the past was moved.
+    // states, the time by which the past was moved, and that at which it began.
     R* ring;
     std::int64_t stride;
     std::int32_t slots, terms;  // slots: a power of two
@@ -78,11 +103,18 @@ struct past_view {
     lane_past<Model, R> lane[lanes];
 
     MYRIAD_FUNCTION R* step_of(int i, std::int32_t k) const {
-        return ring + (k & (slots - 1)) * row + lane[i].instance;
+        return ring + static_cast<std::uint32_t>(k & (slots - 1)) * row + lane[i].instance;
     }
     MYRIAD_FUNCTION R* initial_of(int i) const { return ring + slots * row + lane[i].instance; }
     /// How far the past was moved, by phases whose time begins again.
     MYRIAD_FUNCTION R& moved_of(int i) const { return initial_of(i)[n_kept<Model> * stride]; }
+    /// The time at which it began, moved likewise.
+    MYRIAD_FUNCTION R& begin_of(int i) const { return initial_of(i)[(n_kept<Model> + 1) * stride]; }
+    /// Number c of an entry of the list of jumps: breaking_points.hpp.
+    MYRIAD_FUNCTION R& jump_number(int i, std::int32_t number, int c) const {
+        const std::int64_t place = n_kept<Model> + 2 + (number & (slots - 1)) * jump_numbers<Model> + c;
+        return initial_of(i)[place * stride];
+    }
     /// The time at which step k begins; that of the step after the last is written, too.
     MYRIAD_FUNCTION R& start_of(int i, std::int32_t k) const { return *step_of(i, k); }
     /// The numbers of a state in a step.
@@ -97,95 +129,169 @@ struct past_view {
         return lane[i].steps > 0 ? start_of(i, lane[i].steps) - start_of(i, lane[i].steps - 1) : R(0);
     }
 
-    /// Looks at the step that delayed value j sees at that time: the last that begins there or before.
-    template <int j>
-    MYRIAD_FUNCTION const seen_step<R>& look(int i, R time) const {
-        const lane_past<Model, R>& past = lane[i];
-        seen_step<R>& seen = past.seen[j];
-        if (seen.has(time)) return seen;
-        const std::int32_t known = past.steps + (past.has_trial ? 1 : 0);
-        const std::int32_t last = (past.before[j] < known ? past.before[j] : known) - 1;
-        const std::int32_t first = past.from[j] > oldest(i) ? past.from[j] : oldest(i);
-        std::int32_t k = seen.number;
-        if (k > last) k = last;
-        if (k < first) k = first;
-        MYRIAD_ROLLED
-        while (k < last && start_of(i, k + 1) <= time) ++k;
-        MYRIAD_ROLLED
-        while (k > first && start_of(i, k) > time) --k;
-        seen.number = k;
-        seen.forget();
-        if (k < 0) return seen;
-        R *const step = step_of(i, k), *const next = step_of(i, k + 1);
-        if (MYRIAD_UNLIKELY(k > past.from[j] && k == first && step[0] > time)) past.trouble |= past_trouble::lost;
-        const R length = next[0] - step[0];
-        seen.start = step[0];
-        seen.end = next[0];
-        // In one without length, at a jump, all times are its end.
-        seen.per_length = length != R(0) ? R(1) / length : R(0);
-        if (terms == 2) {
-            const R* const here = terms_of(step, place_of_kept<Model, j>);
-            const R* const there = terms_of(next, place_of_kept<Model, j>);
-            const R difference = there[0] - here[0], begin = length * here[stride], end = length * there[stride];
-            seen.value = length != R(0) ? here[0] : there[0];
-            seen.linear = begin;
-            seen.quadratic = R(3) * difference - begin - begin - end;
-            seen.cubic = begin + end - difference - difference;
-        }
+    /// Looks at the step that delayed value j of functions at t sees at that time: the last that begins there or
+    /// before.
+    template <class J>
+    MYRIAD_FUNCTION const seen_step<R>& look(J j, int i, R time, R t) const {
+        seen_step<R>& seen = lane[i].seen[j];
+        // It ends where the last step does or before, so that a time in it is known and no lag negative.
+        if (!seen.has(time)) find(j, i, time, t, seen);
         return seen;
     }
-    /// The polynomial of a step for the state of delayed value j at that time.
-    template <int j>
-    MYRIAD_FUNCTION R value_in(int i, const seen_step<R>& seen, R time) const {
+    /// The polynomial of a step, not before the beginning, for the state of delayed value j at that time, or its
+    /// derivative of that order.
+    template <int order = 0, class J>
+    MYRIAD_FUNCTION R value_in(J j, int i, const seen_step<R>& seen, R time) const {
+        static_assert(order <= 2);
         const R theta = (time - seen.start) * seen.per_length;
-        if (terms == 2) return fma(theta, fma(theta, fma(theta, seen.cubic, seen.quadratic), seen.linear), seen.value);
-        const R* const here = terms_of(step_of(i, seen.number), place_of_kept<Model, j>);
-        R value = here[(terms - 1) * stride];
-        MYRIAD_ROLLED
-        for (int power = terms - 2; power >= 0; --power) value = fma(theta, value, here[power * stride]);
+        R value;
+        if (terms == 2) {
+            if constexpr (order == 0)
+                return fma(theta, fma(theta, fma(theta, seen.cubic, seen.quadratic), seen.linear), seen.value);
+            if constexpr (order == 1)
+                value = fma(theta, fma(R(3) * theta, seen.cubic, seen.quadratic + seen.quadratic), seen.linear);
+            if constexpr (order == 2) value = R(2) * fma(R(3) * theta, seen.cubic, seen.quadratic);
+        } else {
+            const R* const here = terms_of(step_of(i, seen.number), place_of_kept<Model>(j));
+            const auto term = [&](int power) MYRIAD_LAMBDA {
+                R factor = here[power * stride];
+                for (int k = 0; k < order; ++k) factor = static_cast<R>(power - k) * factor;
+                return factor;
+            };
+            value = term(terms - 1);
+            MYRIAD_ROLLED
+            for (int power = terms - 2; power >= order; --power) value = fma(theta, value, term(power));
+        }
+        MYRIAD_UNROLL
+        for (int k = 0; k < order; ++k) value = value * seen.per_length;
         return value;
     }
-    /// And its derivative.
-    template <int j>
-    MYRIAD_FUNCTION R slope_in(int i, const seen_step<R>& seen, R time) const {
-        const R theta = (time - seen.start) * seen.per_length;
-        if (terms == 2)
-            return fma(theta, fma(R(3) * theta, seen.cubic, seen.quadratic + seen.quadratic), seen.linear) *
-                   seen.per_length;
-        const R* const here = terms_of(step_of(i, seen.number), place_of_kept<Model, j>);
-        R slope = static_cast<R>(terms - 1) * here[(terms - 1) * stride];
-        MYRIAD_ROLLED
-        for (int power = terms - 2; power > 0; --power)
-            slope = fma(theta, slope, static_cast<R>(power) * here[power * stride]);
-        return slope * seen.per_length;
+
+private:
+    /// What the ring has of a step: its times and, for `terms` = 2, the state and its slope at both.
+    struct kept_step {
+        R start, end, here, slope_here, there, slope_there;
+    };
+    /// Reads step k of the state of delayed value j, all at once: on a GPU, one read waits as long as several.
+    template <class J>
+    MYRIAD_FUNCTION kept_step read(J j, int i, std::int32_t k) const {
+        R *const step = step_of(i, k), *const next = step_of(i, k + 1);
+        kept_step at{step[0], next[0], R(0), R(0), R(0), R(0)};
+        if (terms == 2) {
+            const R* const here = terms_of(step, place_of_kept<Model>(j));
+            const R* const there = terms_of(next, place_of_kept<Model>(j));
+            at.here = here[0], at.slope_here = here[stride];
+            at.there = there[0], at.slope_there = there[stride];
+        }
+        MYRIAD_MEMORY_BARRIER;  // else the compiler reads some of them later
+        if (k < 0) at.start = -infinity_of<R>;
+        return at;
     }
-    /// The same before the beginning, without a history function.
-    template <int j>
-    MYRIAD_FUNCTION R initial_value(int i) const {
-        return initial_of(i)[place_of_kept<Model, j> * stride];
+    /// Finds the step that contains a time that is not in the one seen last.
+    template <class J>
+    MYRIAD_LARGE_FUNCTION void find(J j, int i, R time, R t, seen_step<R>& seen) const {
+        const lane_past<Model, R>& past = lane[i];
+        const R end = get_lane(reached, i);
+        if (!(time <= t + R(16) * epsilon_of<R> * abs(t))) past.trouble |= past_trouble::invalid;
+        if (time > end + R(64) * epsilon_of<R> * max(abs(end), abs(t))) past.trouble |= past_trouble::not_yet;
+        const std::int32_t known = past.steps + (past.has_trial ? 1 : 0);
+        const auto lag = number_of_lag<Model>(j);
+        const std::int32_t last = (past.before[lag] < known ? past.before[lag] : known) - 1;
+        if (last < 0) return see_initial(j, i, seen);
+        const std::int32_t first = past.from[lag] > oldest(i) ? past.from[lag] : oldest(i);
+        std::int32_t k = seen.number + (time < seen.end ? 0 : 1);  // time goes on, mostly
+        if (k > last) k = last;
+        if (k < first) k = first;
+        kept_step at = read(j, i, k);
+        MYRIAD_ROLLED
+        while (k < last && at.end <= time) at = read(j, i, ++k);
+        MYRIAD_ROLLED
+        while (k > first && at.start > time) at = read(j, i, --k);
+        if (MYRIAD_UNLIKELY(k > past.from[lag] && k == first && at.start > time)) {
+            if (past.from[lag] < 0 && time < begin_of(i)) {
+                k = -1;
+            } else {
+                past.trouble |= past_trouble::lost;
+            }
+        }
+        if (is_delayed_slope<Model>(j)) {  // a jump that is now, behind which there is no slope yet
+            if (MYRIAD_UNLIKELY(k >= 0 && at.start == at.end)) at = read(j, i, --k);
+        }
+        if (k < 0) return see_initial(j, i, seen);
+        R length = at.end - at.start, reach = length;
+        bool is_short = false;
+        if constexpr (!has_constant_lags<Model, R>) {
+            // Before a jump a step is continued beyond its end: the last that is not short, as the polynomial of a
+            // short one is, farther away, one of roundings. Jumps lie in steps without length.
+            const auto find_short = [&]() MYRIAD_LAMBDA {
+                length = at.end - at.start;
+                reach = R(0.125) * (time - at.start);
+                is_short = reach > length;
+            };
+            find_short();
+            MYRIAD_ROLLED
+            while (MYRIAD_UNLIKELY(is_short) && length > R(0) && k > first && k > 0) {
+                const kept_step earlier = read(j, i, k - 1);
+                if (!(earlier.end > earlier.start)) break;
+                at = earlier;
+                --k;
+                find_short();
+            }
+            reach = max(length, reach);
+        }
+        seen.number = k;
+        seen.start = at.start;
+        // A trial is looked at anew each time, as the next one replaces it.
+        seen.end = k < past.steps && !is_short ? at.end : -infinity_of<R>;
+        // In one without length, at a jump, all times are its end.
+        seen.per_length = length != R(0) ? reciprocal(reach) : R(0);
+        if (terms == 2) {
+            const R difference = at.there - at.here;
+            const R rise_here = length * at.slope_here, rise_there = length * at.slope_there;
+            seen.value = length != R(0) ? at.here : at.there;
+            seen.linear = rise_here;
+            seen.quadratic = R(3) * difference - rise_here - rise_here - rise_there;
+            seen.cubic = rise_here + rise_there - difference - difference;
+            // Time goes on: the next step is likely to be looked at next, and only its end has not been read.
+            const R* const there = terms_of(step_of(i, k + 2), place_of_kept<Model>(j));
+            MYRIAD_PREFETCH(step_of(i, k + 2)), MYRIAD_PREFETCH(there), MYRIAD_PREFETCH(there + stride);
+        }
+    }
+    /// Before the beginning, without a history function, the states were what they were there.
+    template <class J>
+    MYRIAD_FUNCTION void see_initial(J j, int i, seen_step<R>& seen) const {
+        seen.number = -1;
+        seen.start = -infinity_of<R>;
+        if (lanes > 1 && lane[i].instance < 0) {  // which other threads may be writing
+            seen.end = infinity_of<R>;
+            seen.value = R(0);
+            return;
+        }
+        seen.end = begin_of(i);
+        seen.value = initial_of(i)[place_of_kept<Model>(j) * stride];
     }
 };
 
-/// The past of instance `index` in lane i.
-template <class Model, class S, class Arguments>
+/// The past of instance `index` in lane i, by that method; without an index, one without steps.
+template <class Method, class Model, class S, class Arguments>
 MYRIAD_FUNCTION void look_back(past_view<Model, S>& past, const Arguments& args, int i, std::int64_t index) {
     past.ring = args.history.ring;
     past.stride = args.size;
     past.slots = args.history.slots;
-    past.terms = args.history.terms;
-    past.row = history_fields(n_kept<Model>, args.history.terms) * args.size;
+    past.terms = history_terms<Method>;
+    past.row = history_fields(n_kept<Model>, history_terms<Method>) * args.size;
     past.lane[i].instance = index;
-    past.lane[i].steps = args.history.place[index];
+    past.lane[i].steps = index >= 0 ? args.history.place[index] : 0;
     past.lane[i].begins = false;
     past.lane[i].resumes = true;
     past.lane[i].has_trial = false;
     past.lane[i].trouble = past_trouble::none;
-    MYRIAD_UNROLL
-    for (int j = 0; j < n_delayed<Model>; ++j) {
-        past.lane[i].from[j] = -1;
-        past.lane[i].before[j] = past.lane[i].none;
-        past.lane[i].seen[j].number = past.lane[i].steps - 1;
-    }
+    detail::for_each_lag<Model>([&](auto g, auto) MYRIAD_LAMBDA {
+        past.lane[i].from[g] = -1;
+        past.lane[i].before[g] = past.lane[i].none;
+    });
+    detail::for_each_delayed<Model>([&](auto j)
+                                        MYRIAD_LAMBDA { past.lane[i].seen[j].number = past.lane[i].steps - 1; });
     past.lane[i].forget();
 }
 
@@ -213,6 +319,14 @@ struct values_of_past<Model, S, true> {
     /// `p.delayed[d]`: delayed value d.
     mutable vec<S, detail::n_delayed<Model>> delayed;
     detail::past_view<Model, S> past;
+    /// Of a model with neighbouring solutions, until a jump is in the list of jumps: whether there is one, and how much
+    /// later it is in each of them.
+    vec<S, detail::jump_numbers<Model>> later;
+};
+/// With derivatives, without the past itself.
+template <class Model, class S, class Derivative>
+struct values_of_past<Model, dual<S, Derivative>, true> {
+    mutable vec<dual<S, Derivative>, detail::n_delayed<Model>> delayed;
 };
 
 /// The same for hooks, at the state that they see.
@@ -226,6 +340,15 @@ struct past_of_hook<Model, S, true> {
     const vec<S, detail::n_delayed<Model>>& delayed;  ///< the values of the past
     template <class Data>
     MYRIAD_FUNCTION explicit past_of_hook(const Data& d) : delayed(d.delayed) {}
+};
+/// Of a model with neighbouring solutions, for the library's own hooks.
+template <class Model, class S>
+requires(detail::jump_numbers<Model> > 0 && !detail::is_dual<S>) struct past_of_hook<Model, S, true> {
+    const vec<S, detail::n_delayed<Model>>& delayed;
+    const detail::past_view<Model, S>& past;
+    vec<S, detail::jump_numbers<Model>>& later;
+    template <class Data>
+    MYRIAD_FUNCTION explicit past_of_hook(Data& d) : delayed(d.delayed), past(d.past), later(d.later) {}
 };
 
 }  // namespace myriad::inline MYRIAD_TARGET

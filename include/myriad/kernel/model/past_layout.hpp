@@ -2,7 +2,9 @@
 // Which states a model's delayed values are of, and what the ring of the past holds of each step.
 #pragma once
 
+#include <concepts>
 #include <cstdint>
+#include <type_traits>
 
 #include "myriad/kernel/core/static_for.hpp"
 #include "myriad/kernel/methods/dense.hpp"
@@ -10,26 +12,15 @@
 
 namespace myriad::detail {
 
-/// The number of the first delayed value of the same state as delayed value j, or j.
+/// Whether delayed value j is the derivative that its state had by time, as in neutral equations.
 template <class Model>
-MYRIAD_FUNCTION int first_delayed_of_state(int j) {
-    for (int k = 0; k < j; ++k)
-        if (Model::delayed_state(k) == Model::delayed_state(j)) return k;
-    return j;
-}
-/// Number of different states among the first so many delayed values.
+inline constexpr bool has_delayed_slopes = has_delays<Model>&& names_is_delayed_slope<Model>();
 template <class Model>
-MYRIAD_FUNCTION int kept_states_of_first(int count) {
-    int kept = 0;
-    for (int j = 0; j < count; ++j) kept += first_delayed_of_state<Model>(j) == j ? 1 : 0;
-    return kept;
-}
-template <class Model>
-MYRIAD_FUNCTION int n_kept_of() {
-    if constexpr (has_delays<Model> && has_delayed_state<Model>) {
-        return kept_states_of_first<Model>(n_delayed<Model>);
+MYRIAD_FUNCTION bool is_delayed_slope(int j) {
+    if constexpr (has_delayed_slopes<Model>) {
+        return Model::is_delayed_slope(j);
     } else {
-        return 0;
+        return false;
     }
 }
 /// Whether each delayed value is of a state.
@@ -39,31 +30,99 @@ MYRIAD_FUNCTION bool states_of_delays_exist() {
         if (Model::delayed_state(j) < 0 || Model::delayed_state(j) >= n_state<Model>) return false;
     return true;
 }
-/// Number of states whose past is kept.
+/// The first delayed value that is as long ago as delayed value j, if the model says so: their jumps arrive together.
 template <class Model>
-inline constexpr int n_kept = n_kept_of<Model>();
-/// Where delayed value j is among them.
-template <class Model, int j>
-inline constexpr int place_of_kept = kept_states_of_first<Model>(first_delayed_of_state<Model>(j));
+MYRIAD_FUNCTION int first_of_lag(int j) {
+    if constexpr (requires {
+                      { Model::same_lag(j) } -> std::same_as<int>;
+                  }) {
+        return Model::same_lag(j);
+    } else {
+        return j;
+    }
+}
+/// Whether `same_lag` names the first of its values for each.
+template <class Model>
+MYRIAD_FUNCTION bool same_lags_are_first() {
+    for (int j = 0; j < n_delayed<Model>; ++j) {
+        const int first = first_of_lag<Model>(j);
+        if (first < 0 || first > j || first_of_lag<Model>(first) != first) return false;
+    }
+    return true;
+}
 
-/// Calls `visit(place, number of the state)` for each state whose past is kept.
-template <class Model, class Visit>
-MYRIAD_FUNCTION void for_each_kept_state(Visit&& visit) {
-    static_for<0, n_delayed<Model>>([&](auto j) MYRIAD_LAMBDA {
-        constexpr int number = decltype(j)::value;
-        if constexpr (first_delayed_of_state<Model>(number) == number)
-            visit(constant_index<place_of_kept<Model, number>>{}, Model::delayed_state(number));
-    });
+/// How many states are kept, and how many lags there are.
+struct numbers_of_past {
+    int kept = 0, lags = 0;
+};
+/// What of the past is kept, and which delayed value sees what of it.
+template <class Model, int kept, int lags>
+struct tables_of_past {
+    int place[n_delayed<Model>];  // of each delayed value: that of its state among the states that are kept
+    int lag[n_delayed<Model>];    // and that of its lag among the lags
+    int state[kept];              // the states that are kept
+    int first[lags];              // the first delayed value of each lag
+};
+/// Calls `put_state(j, place, is_new)` and `put_lag(j, place, is_new)` for all delayed values.
+template <class Model>
+constexpr numbers_of_past visit_delayed_values(auto&& put_state, auto&& put_lag) {
+    if (!states_of_delays_exist<Model>() || !same_lags_are_first<Model>()) return {1, 1};  // refused elsewhere
+    int place_of_state[n_state<Model>] = {}, place_of_lag[n_delayed<Model>] = {};
+    numbers_of_past numbers;
+    for (int j = 0; j < n_delayed<Model>; ++j) {
+        int& place = place_of_state[Model::delayed_state(j)];  // plus one
+        const bool is_new = place == 0;
+        if (is_new) place = ++numbers.kept;
+        put_state(j, place - 1, is_new);
+        const int first = first_of_lag<Model>(j);
+        if (first == j) place_of_lag[j] = numbers.lags++;
+        put_lag(j, place_of_lag[first], first == j);
+    }
+    return numbers;
+}
+template <class Model>
+constexpr numbers_of_past numbers_of_past_of() {
+    if constexpr (has_delays<Model> && has_delayed_state<Model>) {
+        return visit_delayed_values<Model>([](int, int, bool) {}, [](int, int, bool) {});
+    } else {
+        return {};
+    }
+}
+/// Number of states whose past is kept, and of lags whose jumps arrive at different times.
+template <class Model>
+inline constexpr int n_kept = numbers_of_past_of<Model>().kept;
+template <class Model>
+inline constexpr int n_lag = numbers_of_past_of<Model>().lags;
+template <class Model>
+constexpr auto make_tables_of_past() {
+    tables_of_past<Model, n_kept<Model>, n_lag<Model>> tables = {};
+    const auto put = [](int* place, int* first, int j, int at, int value, bool is_new) {
+        place[j] = at;
+        if (is_new) first[at] = value;
+    };
+    visit_delayed_values<Model>(
+        [&](int j, int at, bool is_new) { put(tables.place, tables.state, j, at, Model::delayed_state(j), is_new); },
+        [&](int j, int at, bool is_new) { put(tables.lag, tables.first, j, at, j, is_new); });
+    return tables;
 }
 
 /// Numbers that a step has in the ring: the time at its start and, of each state kept, either value and slope there
 /// (`terms` = 2), from which and the next step's the cubic Hermite polynomial follows, or the coefficients of the
 /// method's own interpolant.
 MYRIAD_FUNCTION int history_fields(int kept, int terms) { return 1 + kept * terms; }
-/// Numbers that the past of an instance takes: its steps, the initial value of each state kept, and the time by which
-/// the steps were moved.
-MYRIAD_FUNCTION std::int64_t history_numbers(std::int64_t slots, int kept, int terms) {
-    return kept > 0 ? slots * history_fields(kept, terms) + kept + 1 : 0;
+/// Numbers kept of each jump besides its entry in the list of jumps: breaking_points.hpp.
+template <class Model>
+inline constexpr int jump_numbers = [] {
+    if constexpr (requires { requires std::is_same_v<decltype(Model::n_jump_numbers), const int>; }) {
+        return Model::n_jump_numbers;
+    } else {
+        return 0;
+    }
+}();
+/// Numbers that the past of an instance takes: its steps, the initial value of each state kept, the time by which the
+/// steps were moved, that at which they began, and those of each jump.
+MYRIAD_FUNCTION std::int64_t history_numbers(std::int64_t slots, int kept, int terms, int of_jump) {
+    return kept > 0 ? slots * (history_fields(kept, terms) + of_jump) + kept + 2 : 0;
 }
 /// How many numbers of each state a method's interpolant takes.
 template <class Method>

@@ -17,19 +17,10 @@ template <class Model, class Method>
 constexpr bool check_delays() {
     static_assert(!has_delays<Model> || !stochastic_method<Method>,
                   "the model has delays, which methods for stochastic equations do not take");
-    static_assert(!has_delays<Model> || n_unit<Model> == 0,
-                  "the model has delays, which coupled units do not take: write it as one model");
     return true;
 }
 template <class Model, class Method>
 inline constexpr bool delays_fit = check_delays<Model, Method>();
-
-/// Whether lags depend on parameters and shared values alone: `lag(j, p)`. The jumps of the past then arrive at times
-/// that are known.
-template <class Model, class S>
-inline constexpr bool has_constant_lags = requires(const inputs<Model, S>& p) {
-    Model::template lag<S>(0, p);
-};
 
 /// How long ago delayed value j is.
 template <class Model, class S>
@@ -43,8 +34,8 @@ MYRIAD_FUNCTION S lag_of(int j, const S& t, const vec<S, n_state<Model>>& y, con
 
 /// Whether the model gives what delayed value j was before the beginning, by a function `history`; where that has some
 /// of them alone, a function `has_history` says which. Others had the initial value.
-template <class Model, int j>
-MYRIAD_FUNCTION bool gives_history() {
+template <class Model>
+MYRIAD_FUNCTION bool gives_history([[maybe_unused]] int j) {
     if constexpr (has_history<Model> && requires {
                       { Model::has_history(j) } -> std::same_as<bool>;
                   }) {
@@ -62,70 +53,69 @@ MYRIAD_FUNCTION S time_of_history(S time, const inputs<Model, S>& p) {
     return time;
 }
 
-/// Looks up delayed value j at that time: `inside(lane, step, time)` in the step that it sees; before the beginning
-/// `history(time)`, or `initial(lane)` of a state without one.
-template <class Model, int j, class S, class Inside, class Initial, class History>
-MYRIAD_FUNCTION S look_up(const S& time, const inputs<Model, S>& p, const Inside& inside, const Initial& initial,
-                          [[maybe_unused]] const History& history) {
+/// Looks up delayed value j of functions at t at that time: `inside(lane, step, time)` in the step that it sees; before
+/// the beginning `history(time)`, or `initial(step)` of a model without one.
+template <class Model, class J, class S, class Inside, class Initial, class History>
+MYRIAD_FUNCTION S look_up(J j, const S& time, const S& t, const inputs<Model, S>& p, const Inside& inside,
+                          const Initial& initial, [[maybe_unused]] const History& history) {
+    const bool has_given = gives_history<Model>(j);
     S found = S(real_of<S>(0));
     mask_of<S> before = mask_of<S>(false);
     MYRIAD_UNROLL
     for (int i = 0; i < lanes_of<S>; ++i) {
         const auto at = get_lane(time, i);
-        const auto& seen = p.past.template look<j>(i, at);
+        const auto& seen = p.past.look(j, i, at, get_lane(t, i));
         set_lane(before, i, seen.number < 0);
-        set_lane(found, i, seen.number >= 0 ? inside(i, seen, at) : initial(i));
+        const auto value = inside(i, seen, at);
+        set_lane(found, i, seen.number < 0 && !has_given ? initial(seen) : value);
     }
-    if constexpr (gives_history<Model, j>()) {
-        if (any(before)) found = select(before, history(detail::time_of_history<Model>(time, p)), found);
+    if constexpr (has_history<Model>) {
+        if (has_given && any(before)) found = select(before, history(detail::time_of_history<Model>(time, p)), found);
     }
     return found;
 }
-/// Delayed value j at that time, and its derivative by time.
-template <class Model, int j, class S>
-MYRIAD_FUNCTION S past_value(const S& time, const inputs<Model, S>& p) {
-    return detail::look_up<Model, j>(
-        time, p,
-        [&](int i, const auto& seen, auto at) MYRIAD_LAMBDA { return p.past.template value_in<j>(i, seen, at); },
-        [&](int i) MYRIAD_LAMBDA { return p.past.template initial_value<j>(i); },
+/// The history of delayed value j at that time, or its derivative of that order.
+template <class Model, int order, class S>
+MYRIAD_FUNCTION auto history_at(int j, const S& time, const auto& p) {
+    if constexpr (order == 0) {
+        return S(Model::template history<S>(j, time, p));
+    } else {
+        const dual<S> moving(time, S(real_of<S>(1)));
+        return detail::history_at<Model, order - 1>(j, moving, p).derivative;
+    }
+}
+/// The state of delayed value j of functions at t, at that time, or its derivative by time of that order.
+template <class Model, int order, class J, class S>
+MYRIAD_FUNCTION S state_of_past(J j, const S& time, const S& t, const inputs<Model, S>& p) {
+    using R = real_of<S>;
+    return detail::look_up<Model>(
+        j, time, t, p,
+        [&](int i, const auto& seen, auto at) MYRIAD_LAMBDA { return p.past.template value_in<order>(j, i, seen, at); },
+        [](const auto& seen) MYRIAD_LAMBDA { return order == 0 ? seen.value : R(0); },
         [&](const S& then) MYRIAD_LAMBDA {
-            if constexpr (gives_history<Model, j>()) return S(Model::template history<S>(j, then, p));
-            return then;
+            if constexpr (has_history<Model>) {
+                return S(detail::history_at<Model, order>(j, then, p));
+            } else {
+                return then;
+            }
         });
 }
-template <class Model, int j, class S>
-MYRIAD_FUNCTION S past_slope(const S& time, const inputs<Model, S>& p) {
-    using R = real_of<S>;
-    return detail::look_up<Model, j>(
-        time, p,
-        [&](int i, const auto& seen, auto at) MYRIAD_LAMBDA { return p.past.template slope_in<j>(i, seen, at); },
-        [](int) MYRIAD_LAMBDA { return R(0); },
-        [&](const S& then) MYRIAD_LAMBDA {
-            if constexpr (gives_history<Model, j>())
-                return S(Model::template history<dual<S>>(j, dual<S>(then, S(R(1))), p).derivative);
-            return then;
-        });
+/// Delayed value j itself, or its derivative of that order.
+template <class Model, int order, class J, class S>
+MYRIAD_FUNCTION S past_value(J j, const S& time, const S& t, const inputs<Model, S>& p) {
+    if constexpr (has_delayed_slopes<Model>) {
+        if (is_delayed_slope<Model>(j)) return detail::state_of_past<Model, order + 1>(j, time, t, p);
+    }
+    return detail::state_of_past<Model, order>(j, time, t, p);
 }
 
 /// Sets `p.delayed` for functions that are evaluated at (t, y).
 template <class Model, class S>
 MYRIAD_FUNCTION void recall(const S& t, const vec<S, n_state<Model>>& y, const inputs<Model, S>& p) {
     if constexpr (has_delays<Model>) {
-        using R = real_of<S>;
-        const S slack = S(R(64) * epsilon_of<R>) * abs(t);
-        static_for<0, n_delayed<Model>>([&](auto j) MYRIAD_LAMBDA {
-            const S lag = detail::lag_of<Model>(j, t, y, p);
-            const S time = t - lag;
-            p.delayed[j] = detail::past_value<Model, decltype(j)::value>(time, p);
-            const auto invalid = !(lag >= S(R(0)));
-            const auto not_yet = time > p.past.reached + slack;
-            if (MYRIAD_UNLIKELY(any(invalid | not_yet))) {
-                MYRIAD_UNROLL
-                for (int i = 0; i < lanes_of<S>; ++i) {
-                    if (get_lane(invalid, i)) p.past.lane[i].trouble |= past_trouble::invalid;
-                    if (get_lane(not_yet, i)) p.past.lane[i].trouble |= past_trouble::not_yet;
-                }
-            }
+        detail::for_each_delayed<Model>([&](auto j) MYRIAD_LAMBDA {
+            const S time = t - detail::lag_of<Model>(j, t, y, p);
+            p.delayed[j] = detail::past_value<Model, 0>(j, time, t, p);
         });
     }
 }
@@ -142,16 +132,15 @@ MYRIAD_FUNCTION past_in_motion<Model, S> moving_past(const dual<S>& t, const vec
     for (int c = 0; c < n_state<Model>; ++c) at[c] = y[c].value;
     detail::recall<Model>(t.value, at, p);
     past_in_motion<Model, S> with{p, {}};
-    static_for<0, n_delayed<Model>>([&](auto j) MYRIAD_LAMBDA {
-        constexpr int number = decltype(j)::value;
+    detail::for_each_delayed<Model>([&](auto j) MYRIAD_LAMBDA {
         dual<S> time = t;
         if constexpr (has_constant_lags<Model, S>) {
-            time.value = t.value - Model::template lag<S>(number, p);
+            time.value = t.value - Model::template lag<S>(j, p);
         } else {
-            time = t - Model::template lag<dual<S>>(number, t, y, p);
+            time = t - Model::template lag<dual<S>>(j, t, y, p);
         }
-        with.delayed[number] = dual<S>(p.delayed[number], detail::past_slope<Model, number>(time.value, p) *
-                                                              static_cast<const S&>(time.derivative));
+        const S slope = detail::past_value<Model, 1>(j, time.value, t.value, p);
+        with.delayed[j] = dual<S>(p.delayed[j], slope * static_cast<const S&>(time.derivative));
     });
     return with;
 }
@@ -170,7 +159,6 @@ MYRIAD_FUNCTION void forget_trial(lane_data<Model, S>& data) {
     MYRIAD_UNROLL
     for (int i = 0; i < lanes_of<S>; ++i) {
         data.past.lane[i].trouble = past_trouble::none;
-        if (data.past.lane[i].has_trial) data.past.lane[i].forget();
         data.past.lane[i].has_trial = false;
     }
 }

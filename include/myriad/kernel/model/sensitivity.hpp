@@ -149,7 +149,7 @@ public:
                 y[c], partials<R, count>::each([&](auto d) MYRIAD_LAMBDA { return partial<R>(y[n * (1 + d) + c]); }));
         });
         const vec<number, n_own_observed> q =
-            Model::template observe<number>(t, moving, detail::inputs_along_all<Model, Directions, R>(p));
+            Model::template observe<number>(t, moving, detail::inputs_along_all<Model, Directions, R>(p, R(t), moving));
         vec<R, n_observed> all;
         static_for<0, n_own_observed>([&](auto k) MYRIAD_LAMBDA {
             all[k] = q[k].value;
@@ -191,6 +191,10 @@ struct with_sensitivities : detail::observing<Model, detail::component_direction
     static_assert(!detail::writes_time_domain<Model>,
                   "with_sensitivities takes no model that writes its time domain: end phases by an event");
 
+    static_assert(!detail::has_delays<Model> ||
+                      ((detail::moving_of<Model, wrt>().kind != detail::moving::t_begin) && ...),
+                  "with_sensitivities has no derivatives by t_begin of a model with delays, whose past would begin "
+                  "elsewhere");
     static_assert(!detail::has_mass_matrix<Model>,
                   "with_sensitivities takes no model with a mass_matrix, which would have to multiply them too");
 
@@ -243,9 +247,16 @@ struct with_sensitivities : detail::observing<Model, detail::component_direction
             dt = detail::part<n_directions>(wrapped.accessory, places::time);
         }
         auto v = detail::part<n_tangent>(wrapped.y, n_original);
+        if constexpr (detail::has_delays<Model>) {
+            if (wrapped.phase != 0 && !continues) lose_moved_past(wrapped, v);
+        }
+        [[maybe_unused]] const auto given = detail::part<n_original>(wrapped.y);
         if constexpr (detail::has_initialise<Model>)
             v = detail::move_through<Model, directions>(wrapped, v, dt,
                                                         [](auto& own) MYRIAD_LAMBDA { Model::initialise(own); });
+        if constexpr (detail::has_delays<Model>) {
+            if (wrapped.phase != 0) lose_moved_jump(wrapped, v, dt, given);
+        }
         if constexpr (detail::has_summaries<Model>) moved::begin(wrapped, v, dt);
         if (continues || begins_move) shift(wrapped, v, dt, R(-1));
         detail::set_part(wrapped.y, n_original, v);
@@ -274,9 +285,11 @@ struct with_sensitivities : detail::observing<Model, detail::component_direction
             if (!detail::all_finite(dt)) wrapped.accessory[undefined] += R(1);
         }
         forget_times(wrapped);
+        [[maybe_unused]] const auto given = detail::part<n_original>(wrapped.y);
         if constexpr (detail::has_finalise<Model>)
             v = detail::move_through<Model, directions>(wrapped, v, dt,
                                                         [](auto& own) MYRIAD_LAMBDA { Model::finalise(own); });
+        if constexpr (detail::has_delays<Model>) lose_moved_jump(wrapped, v, dt, given);
         detail::set_part(wrapped.y, n_original, v);
         detail::set_part(wrapped.accessory, places::time, dt);
     }
@@ -292,6 +305,23 @@ private:
         for (int i = 0; i < n_directions; ++i)
             for (int c = 0; c < n_original; ++c)
                 v[i * n_original + c] = fma(sign * slope[c], dt[i], v[i * n_original + c]);
+    }
+    /// The past moves to where a phase begins. Where the last one ended at another time in a neighbouring solution, its
+    /// past would move by another time: there are no derivatives.
+    MYRIAD_FUNCTION static void lose_moved_past(auto& wrapped, auto& v) {
+        for (int i = 0; i < n_directions; ++i)
+            if (wrapped.accessory[places::time + i] != 0) lose(wrapped, v, i);
+    }
+    /// The same where a hook lets the state jump at a time that moves: it is not in the list of jumps.
+    MYRIAD_FUNCTION static void lose_moved_jump(auto& wrapped, auto& v, const auto& dt, const auto& before) {
+        if (detail::same_values(before, detail::part<n_original>(wrapped.y))) return;
+        for (int i = 0; i < n_directions; ++i)
+            if (dt[i] != 0) lose(wrapped, v, i);
+    }
+    MYRIAD_FUNCTION static void lose(auto& wrapped, auto& v, int direction) {
+        using R = std::remove_cvref_t<decltype(wrapped.t)>;
+        for (int c = 0; c < n_original; ++c) v[direction * n_original + c] = nan_of<R>;
+        wrapped.accessory[undefined] += R(1);
     }
     MYRIAD_FUNCTION static void forget_times(auto& wrapped) {
         for (int i = 0; i < n_directions; ++i) moved::forget(wrapped, i, false);

@@ -23,6 +23,10 @@ struct with_tangents : detail::with_variations<Model, detail::state_directions<v
     static_assert(vectors >= 1 && vectors <= detail::n_state<Model>,
                   "a model of n components has from 1 to n independent tangent vectors");
 
+    static_assert(vectors == 1 || !detail::has_delays<Model>,
+                  "a model with delays has one tangent vector, for the largest exponent: several would have to be "
+                  "orthogonal with their past");
+
     using base = detail::with_variations<Model, detail::state_directions<vectors>>;  ///< with their equations
     using base::n_original, base::n_tangent, base::n_state;
     static constexpr int n_vectors = vectors;  ///< number of tangent vectors
@@ -66,6 +70,8 @@ struct with_tangents : detail::with_variations<Model, detail::state_directions<v
         detail::orthonormalise<n_original, vectors>(wrapped.y, n_original,
                                                     [&](int i, const auto& length) MYRIAD_LAMBDA {
                                                         if (counts) wrapped.accessory[growth(i)] += log(length);
+                                                        if constexpr (detail::has_delays<Model>)
+                                                            detail::scale_past(wrapped.past, n_original, 1 / length);
                                                     });
         if (counts) wrapped.accessory[time_summed] += wrapped.t - wrapped.accessory[phase_began];
         set_exponents(wrapped);

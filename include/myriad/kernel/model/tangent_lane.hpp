@@ -115,6 +115,7 @@ MYRIAD_FUNCTION inputs<Model, S> inputs_in(const lane<W, S>& l) {
     }
     p.shared = l.shared.values;
     p.shared_integer = l.shared_integer.values;
+    if constexpr (has_delays<Model>) p.delayed = part<n_delayed<Model>>(l.delayed);
     return p;
 }
 
@@ -147,7 +148,8 @@ MYRIAD_FUNCTION decltype(auto) inputs_along(const From& from) {
     constexpr moving_component its = Directions::template at<i>;
     constexpr bool accessories_move =
         Directions::carries_accessories && n_accessory < Model >> 0 && !accessories_are_outputs<Model>;
-    if constexpr (its.kind != moving::parameter && its.kind != moving::shared && !accessories_move) {
+    if constexpr (its.kind != moving::parameter && its.kind != moving::shared && !accessories_move &&
+                  !has_delays<Model>) {
         if constexpr (requires { from.h_next; }) {
             return detail::inputs_in<Model>(from);
         } else {
@@ -210,6 +212,9 @@ MYRIAD_FUNCTION auto inputs_along_all(const auto& from) {
     return p;
 }
 
+template <class Model, class Directions>
+struct varied_past;  // varied_past.hpp
+
 /// The lane of Model alone, in dual numbers: its state has the given direction as derivative, its time has dt, and
 /// everything else moves as direction i says.
 template <class Model, class Directions, int i, class W, class S>
@@ -234,6 +239,10 @@ MYRIAD_FUNCTION lane_data<Model, dual<S>> moving_lane(const lane<W, S>& l, const
     d.index = static_cast<index_of<dual<S>>>(l.index);
     d.phase = l.phase;
     d.event_count = l.event_count;
+    if constexpr (has_delays<Model>) {
+        const auto p = detail::inputs_along<Model, Directions, i, S>(l);
+        d.delayed = varied_past<Model, Directions>::template along<i>(p, l, d.t, d.y);
+    }
     return d;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <type_traits>
+#include <utility>
 
 #include "myriad/kernel/core/vec.hpp"
 #include "myriad/kernel/model/concepts.hpp"
@@ -87,6 +88,7 @@ MYRIAD_FUNCTION T* first_of_unit(T* first, int unit) {
     MYRIAD_ENUMERATION_OF_COUNT(unit_##kind, n_unit_##kind)
 MYRIAD_COMPONENT_KINDS(MYRIAD_ENUMERATIONS_OF_KIND)
 MYRIAD_ENUMERATION_OF_COUNT(publication, n_publication)
+MYRIAD_ENUMERATION_OF_COUNT(unit_delayed, n_unit_delayed)
 #undef MYRIAD_ENUMERATIONS_OF_KIND
 #undef MYRIAD_ENUMERATION_OF_COUNT
 
@@ -200,39 +202,74 @@ struct accessory_blocks<Unit, n, A, I, false> {
     MYRIAD_FUNCTION accessory_blocks(auto&, int) {}
 };
 
-/// The parameters of the system and of a unit, and what all instances share.
-template <class Unit, int n, class S, class Real>
-struct parameter_blocks {
+/// The parameters of the system, and what all instances share.
+template <class Unit, class S, class Real>
+struct system_blocks {
     component_block<S, detail::n_parameter<Unit>, detail::parameter_enumeration<Unit>> parameter;  ///< of the system
-    /// of the unit
-    component_block<S, detail::n_unit_parameter<Unit>, detail::unit_parameter_enumeration<Unit>> unit_parameter;
     component_block<const Real, detail::n_shared<Unit>, detail::shared_enumeration<Unit>> shared;  ///< of the system
-    /// of the unit: the same in all instances
-    component_block<const Real, detail::n_unit_shared<Unit>, detail::unit_shared_enumeration<Unit>> unit_shared;
     /// integers of the system
     component_block<const std::int32_t, detail::n_shared_integer<Unit>, detail::shared_integer_enumeration<Unit>>
         shared_integer;
+    /// Made by the library.
+    MYRIAD_FUNCTION explicit system_blocks(auto& inputs)
+        : parameter{detail::first_of(inputs.parameter)}, shared{inputs.shared}, shared_integer{inputs.shared_integer} {}
+};
+/// The argument p of what is the same for all units.
+template <class Unit, class S, class Real>
+struct system_inputs : system_blocks<Unit, const S, Real> {
+    using system_blocks<Unit, const S, Real>::system_blocks;
+
+    /// Parameter i.
+    template <class I>
+    MYRIAD_FUNCTION const S& operator[](I i) const {
+        return this->parameter[i];
+    }
+};
+
+/// The values of the past that a unit reads, if there are any.
+template <class Unit, class Data, bool there = (detail::n_unit_delayed<Unit> > 0)>
+struct past_of_unit {
+    MYRIAD_FUNCTION past_of_unit(const Data&, int) {}
+};
+template <class Unit, class Data>
+struct past_of_unit<Unit, Data, true> {
+    using value = std::remove_cvref_t<decltype(*detail::first_of(std::declval<const Data&>().delayed))>;  ///< a number
+    /// of the unit, at the time that its function is called for
+    component_block<const value, detail::n_unit_delayed<Unit>, detail::unit_delayed_enumeration<Unit>> unit_delayed;
+    /// Made by the library.
+    MYRIAD_FUNCTION past_of_unit(const Data& data, int unit)
+        : unit_delayed{detail::first_of_unit<0, detail::n_unit_delayed<Unit>>(detail::first_of(data.delayed), unit)} {}
+};
+
+/// The parameters of the system and of a unit, and what all instances share.
+template <class Unit, int n, class S, class Real>
+struct parameter_blocks : system_blocks<Unit, S, Real> {
+    /// of the unit
+    component_block<S, detail::n_unit_parameter<Unit>, detail::unit_parameter_enumeration<Unit>> unit_parameter;
+    /// of the unit: the same in all instances
+    component_block<const Real, detail::n_unit_shared<Unit>, detail::unit_shared_enumeration<Unit>> unit_shared;
     /// integers of the unit, the same in all instances
     component_block<const std::int32_t, detail::n_unit_shared_integer<Unit>,
                     detail::unit_shared_integer_enumeration<Unit>>
         unit_shared_integer;
     /// Made by the library.
     MYRIAD_FUNCTION parameter_blocks(auto& inputs, int unit)
-        : parameter{detail::first_of(inputs.parameter)},
-          unit_parameter{
-              detail::first_of_unit<detail::n_parameter<Unit>, detail::n_unit_parameter<Unit>>(parameter.first, unit)},
-          shared{inputs.shared}, unit_shared{detail::first_of_unit<detail::n_shared<Unit>, detail::n_unit_shared<Unit>>(
-                                     shared.first, unit)},
-          shared_integer{inputs.shared_integer},
+        : system_blocks<Unit, S, Real>(inputs),
+          unit_parameter{detail::first_of_unit<detail::n_parameter<Unit>, detail::n_unit_parameter<Unit>>(
+              this->parameter.first, unit)},
+          unit_shared{
+              detail::first_of_unit<detail::n_shared<Unit>, detail::n_unit_shared<Unit>>(this->shared.first, unit)},
           unit_shared_integer{
               detail::first_of_unit<detail::n_shared_integer<Unit>, detail::n_unit_shared_integer<Unit>>(
-                  shared_integer.first, unit)} {}
+                  this->shared_integer.first, unit)} {}
 };
 
 /// The argument p of a unit's functions: `p[k]` is parameter k of the system, `p.unit_parameter[k]` of the unit;
-/// likewise `p.shared` and `p.unit_shared`, `p.accessory` and `p.unit_accessory`.
+/// likewise `p.shared` and `p.unit_shared`, `p.accessory` and `p.unit_accessory`; `p.unit_delayed[d]` is a value of the
+/// past.
 template <class Unit, int n, class S, class Real, class Inputs>
 struct unit_inputs : parameter_blocks<Unit, n, const S, Real>,
+                     past_of_unit<Unit, Inputs>,
                      accessory_blocks<Unit, n, const S, const integer_of<S>, !detail::accessories_are_outputs<Unit>> {
     using real = Real;     ///< double or float
     const Inputs& inputs;  ///< those of the system
@@ -240,7 +277,7 @@ struct unit_inputs : parameter_blocks<Unit, n, const S, Real>,
 
     /// Made by the library.
     MYRIAD_FUNCTION unit_inputs(const Inputs& of_system, int of_unit)
-        : parameter_blocks<Unit, n, const S, Real>(of_system, of_unit),
+        : parameter_blocks<Unit, n, const S, Real>(of_system, of_unit), past_of_unit<Unit, Inputs>(of_system, of_unit),
           accessory_blocks<Unit, n, const S, const integer_of<S>, !detail::accessories_are_outputs<Unit>>(of_system,
                                                                                                           of_unit),
           inputs(of_system), unit(of_unit) {}
@@ -257,7 +294,9 @@ struct unit_inputs : parameter_blocks<Unit, n, const S, Real>,
 /// The argument of a unit's hooks: what `lane` has of the system, and the unit's own. Hooks of one unit may write what
 /// belongs to the system and, by `of`, to other units.
 template <class Unit, int n, class S, class P, class Lane>
-struct unit_lane : parameter_blocks<Unit, n, P, real_of<S>>, accessory_blocks<Unit, n, S, integer_of<S>, true> {
+struct unit_lane : parameter_blocks<Unit, n, P, real_of<S>>,
+                   past_of_unit<Unit, Lane>,
+                   accessory_blocks<Unit, n, S, integer_of<S>, true> {
     Lane& lane;                       ///< that of the system
     int unit;                         ///< the number of the unit
     const S& t;                       ///< time
@@ -273,7 +312,7 @@ struct unit_lane : parameter_blocks<Unit, n, P, real_of<S>>, accessory_blocks<Un
 
     /// Made by the library.
     MYRIAD_FUNCTION unit_lane(Lane& of_system, int of_unit)
-        : parameter_blocks<Unit, n, P, real_of<S>>(of_system, of_unit),
+        : parameter_blocks<Unit, n, P, real_of<S>>(of_system, of_unit), past_of_unit<Unit, Lane>(of_system, of_unit),
           accessory_blocks<Unit, n, S, integer_of<S>, true>(of_system, of_unit), lane(of_system), unit(of_unit),
           t(of_system.t), t_begin(of_system.t_begin), t_end(of_system.t_end), h(of_system.h),
           h_next(of_system.h_next), y{detail::first_of(of_system.y), of_unit}, index(of_system.index),

@@ -7,9 +7,8 @@
 #include <utility>
 
 #include "myriad/kernel/core/static_for.hpp"
-#include "myriad/kernel/model/forwarded_hooks.hpp"
 #include "myriad/kernel/model/moving_summaries.hpp"
-#include "myriad/kernel/model/tangent_lane.hpp"
+#include "myriad/kernel/model/varied_past.hpp"
 #include "myriad/kernel/scalar/lanes.hpp"
 
 namespace myriad::detail {
@@ -24,23 +23,26 @@ struct crossing {
 
     template <class R>
     MYRIAD_FUNCTION static vec<R, n> slope(const auto& wrapped) {
-        return Model::template rhs<R>(wrapped.t, part<n>(wrapped.y), detail::inputs_in<Model>(wrapped));
+        return Model::template rhs<R>(wrapped.t, part<n>(wrapped.y), detail::inputs_now<Model>(wrapped));
     }
 
     /// How much later neighbouring solutions reach the surface of an event.
     template <class R>
     MYRIAD_FUNCTION static vec<R, count> delays(int event, const auto& wrapped) {
-        const auto derivative = [&](const vec<R, n>& direction, R dt, const auto& p) MYRIAD_LAMBDA {
-            const auto g =
-                Model::template events<dual<R>>(dual<R>(wrapped.t, dt), along(part<n>(wrapped.y), direction), p);
-            return g[event].derivative;
+        const auto derivative = [&](const vec<R, n>& direction, R dt, const auto& inputs_at) MYRIAD_LAMBDA {
+            const dual<R> t(wrapped.t, dt);
+            const vec<dual<R>, n> y = along(part<n>(wrapped.y), direction);
+            return Model::template events<dual<R>>(t, y, inputs_at(t, y))[event].derivative;
         };
-        const R approach = derivative(slope<R>(wrapped), R(1), detail::inputs_in<Model>(wrapped));
+        const R approach = derivative(slope<R>(wrapped), R(1), [&](const auto& t, const auto& y) MYRIAD_LAMBDA {
+            return detail::inputs_along_solution<Model, Directions, R>(wrapped, t, y);
+        });
         vec<R, count> dt;
         static_for<0, count>([&](auto i) MYRIAD_LAMBDA {
-            dt[i] = -derivative(part<n>(wrapped.y, n + i * n), R(0),
-                                detail::inputs_along<Model, Directions, i.value, R>(wrapped)) /
-                    approach;
+            const auto inputs_at = [&](const auto& t, const auto& y) MYRIAD_LAMBDA {
+                return detail::inputs_along<Model, Directions, i.value, R>(wrapped, t, y);
+            };
+            dt[i] = -derivative(part<n>(wrapped.y, n + i * n), R(0), inputs_at) / approach;
         });
         return dt;
     }
@@ -66,11 +68,23 @@ struct crossing {
         const vec<R, n> after = slope<R>(wrapped);
         if constexpr (moves_summaries) summaries::extend(wrapped, finite, R(-1));
         if (same_values(left, arriving) && same_values(before, after)) return true;  // exactly, without rounding
+        if constexpr (has_delays<Model>) note_jump(wrapped, dt);
         if constexpr (moves_summaries) summaries::lose(wrapped, dt);
         MYRIAD_UNROLL
         for (int i = 0; i < count; ++i)
             for (int c = 0; c < n; ++c) wrapped.y[n + i * n + c] = fma(-after[c], dt[i], left[i * n + c]);
         return all_finite(dt);
+    }
+
+private:
+    /// For `breaking_points`: how much later the jump is. Of two at one instant that move differently none is known.
+    template <class R>
+    MYRIAD_FUNCTION static void note_jump(auto& wrapped, const vec<R, count>& dt) {
+        for (int i = 0; i < count; ++i) {
+            R& later = wrapped.later[1 + i];
+            later = wrapped.later[0] != R(0) && later != dt[i] ? nan_of<R> : dt[i];
+        }
+        wrapped.later[0] = R(1);
     }
 };
 
@@ -180,15 +194,11 @@ private:
 /// Model with `Directions::count` directions v' = J v + df/dp, among the states after Model's own: v of direction i
 /// begins at n (1 + i).
 template <class Model, class Directions>
-struct with_variations : forwarded_hooks<Model, varied_hooks<Model, Directions>> {
+struct with_variations : variations_with_history<Model, Directions, varied_hooks<Model, Directions>> {
     static_assert(check_model<Model>());
     static_assert(!has_diffusion<Model>,
                   "with_tangents and with_sensitivities take no model with a diffusion: derivatives of its paths are "
                   "not there yet");
-    static_assert(
-        !has_delays<Model>,
-        "with_tangents and with_sensitivities take no model with delays: derivatives of its past are not there "
-        "yet");
 
     using original = Model;                                    ///< the model alone
     static constexpr int n_original = detail::n_state<Model>;  ///< number of its states
@@ -216,17 +226,18 @@ private:
                 return number(y[k], partials<R, Directions::count>::each(
                                         [&](auto d) MYRIAD_LAMBDA { return partial<R>(y[n_original * (1 + d) + k]); }));
             };
+            const vec<number, n_original> own{moving(constant_index<c>{})...};
             const vec<number, n_original> f =
-                Model::template rhs<number>(t, vec<number, n_original>{moving(constant_index<c>{})...},
-                                            detail::inputs_along_all<Model, Directions, R>(p));
+                Model::template rhs<number>(t, own, detail::inputs_along_all<Model, Directions, R>(p, R(t), own));
             return vec<R, n_state>{(
                 all < n_original ? f[all % n_original].value
                                  : f[all % n_original].derivative.in[all / n_original - (all >= n_original)].value)...};
         } else {
             const auto along_direction = [&](auto k) MYRIAD_LAMBDA {
                 constexpr int first = n_original * (1 + decltype(k)::value);
-                return Model::template rhs<dual<R>>(t, vec<dual<R>, n_original>{dual<R>(y[c], y[first + c])...},
-                                                    detail::inputs_along<Model, Directions, decltype(k)::value, R>(p));
+                const vec<dual<R>, n_original> own{dual<R>(y[c], y[first + c])...};
+                return Model::template rhs<dual<R>>(
+                    t, own, detail::inputs_along<Model, Directions, decltype(k)::value, R>(p, dual<R>(R(t)), own));
             };
             const vec<dual<R>, n_original> f[Directions::count] = {along_direction(constant_index<i>{})...};
             return vec<R, n_state>{(all < n_original

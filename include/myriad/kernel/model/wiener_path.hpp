@@ -76,6 +76,19 @@ struct path_owner {
         set_lane(owner, i, static_cast<lane>(low));
         set_lane(epoch, i, static_cast<lane>(rest));
     }
+    /// Another path of lane i: words that follow from those before, and of which there are 2^64.
+    MYRIAD_FUNCTION void begin_again(int i, const std::uint32_t (&key)[2]) {
+        using R = real_of<S>;
+        using lane = decltype(get_lane(owner, i));
+        const path_owner<R> before = of_lane(i);
+        std::uint32_t w[4] = {before.owner, before.epoch, 0, 0};
+        detail::philox_of_words<R>(w, key[0] ^ 0xbb67ae85u, key[1]);
+        set_lane(owner, i, static_cast<lane>(w[0]));
+        set_lane(epoch, i, static_cast<lane>(w[1]));
+    }
+    MYRIAD_FUNCTION path_owner<real_of<S>> of_lane(int i) const {
+        return {static_cast<std::uint32_t>(get_lane(owner, i)), static_cast<std::uint32_t>(get_lane(epoch, i))};
+    }
 };
 
 /// The part of a path over a step.

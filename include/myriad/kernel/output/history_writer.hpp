@@ -120,8 +120,8 @@ struct history_writer {
             detail::write_step<Model, Method, S>(past, seen);
             for_each_lane(seen.accepted, [&](int i) MYRIAD_LAMBDA {
                 ++past.lane[i].steps;
+                past.lane[i].forget_before(past.oldest(i));
                 past.lane[i].begins = false;
-                if (past.lane[i].has_trial) past.lane[i].forget();
                 past.lane[i].has_trial = false;
             });
             past.reached = select(seen.accepted, seen.t1, past.reached);

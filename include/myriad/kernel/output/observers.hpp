@@ -3,6 +3,7 @@
 // together.
 #pragma once
 
+#include "myriad/kernel/output/bridge_summariser.hpp"
 #include "myriad/kernel/output/history_writer.hpp"
 #include "myriad/kernel/output/sampler.hpp"
 #include "myriad/kernel/output/summariser.hpp"

@@ -183,9 +183,9 @@ requires detail::with_dual<A, B> MYRIAD_FUNCTION auto operator/(const A& a, cons
     if constexpr (detail::is_constant_beside<B, A>) {
         return D(quotient, a.derivative / v);
     } else if constexpr (detail::is_constant_beside<A, B>) {
-        return D(quotient, -quotient * b.derivative / v);
+        return D(quotient, detail::quotient_rule(quotient, v, b.derivative));
     } else {
-        return D(quotient, (a.derivative - quotient * b.derivative) / v);
+        return D(quotient, detail::quotient_rule(quotient, a.derivative, v, b.derivative));
     }
 }
 

@@ -4,11 +4,13 @@
 // infinite.
 #pragma once
 
+#include <concepts>
 #include <utility>
 
 #include "myriad/kernel/core/macros.hpp"
 #include "myriad/kernel/core/static_for.hpp"
 #include "myriad/kernel/scalar/math.hpp"
+#include "myriad/kernel/scalar/select.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
@@ -119,6 +121,14 @@ MYRIAD_FUNCTION partials<S, count> product_rule(const S& u, const partials<S, co
     return add_product(du, v, u * dv);
 }
 
+/// A derivative that is no number, with rules of its own beside numbers S: recorded.hpp.
+template <class D, class S>
+concept derivative_with_rules = std::same_as<typename D::follows_own_rules, S>;
+template <class S, derivative_with_rules<S> D>
+MYRIAD_FUNCTION D product_rule(const S& u, const D& du, const S& v, const D& dv) {
+    return D::sum(v, du, u, dv);
+}
+
 /// Whether derivatives are finite.
 template <class S>
 MYRIAD_FUNCTION auto derivative_is_finite(const S& d) {
@@ -155,6 +165,11 @@ MYRIAD_FUNCTION partials<S, count> scaled_unless_zero(const S& factor, const par
     return partials<S, count>::each([&](auto i) MYRIAD_LAMBDA { return detail::scaled_unless_zero(factor, d.in[i]); });
 }
 
+template <class S, derivative_with_rules<S> D>
+MYRIAD_FUNCTION D scaled_unless_zero(const S& factor, const D& d) {
+    return factor * d;
+}
+
 /// weight * d, but zero where the weight is, even if d is not finite.
 template <class S>
 MYRIAD_FUNCTION S weighted_unless_zero(const S& weight, const S& d) {
@@ -168,6 +183,11 @@ template <class S, int count>
 MYRIAD_FUNCTION partials<S, count> weighted_unless_zero(const S& weight, const partials<S, count>& d) {
     return partials<S, count>::each([&](auto i)
                                         MYRIAD_LAMBDA { return detail::weighted_unless_zero(weight, d.in[i]); });
+}
+
+template <class S, derivative_with_rules<S> D>
+MYRIAD_FUNCTION D weighted_unless_zero(const S& weight, const D& d) {
+    return weight * d;
 }
 
 /// d / by, but zero where d is, even if by is zero.
@@ -186,6 +206,62 @@ MYRIAD_FUNCTION partial<S> quotient_unless_zero(const partial<S>& d, const S& by
 template <class S, int count>
 MYRIAD_FUNCTION partials<S, count> quotient_unless_zero(const partials<S, count>& d, const S& by) {
     return detail::scaled_unless_zero(functions<S>::reciprocal(by), d);
+}
+
+template <class S, derivative_with_rules<S> D>
+MYRIAD_FUNCTION D quotient_unless_zero(const D& d, const S& by) {
+    return d / by;
+}
+
+/// 1 / x, also for infinite x, of which `reciprocal` on GPUs is NaN.
+template <class S>
+MYRIAD_FUNCTION S reciprocal_or_zero(const S& x) {
+    const real_of<S> largest = largest_of<S>;
+    return select(functions<S>::abs(x) > largest, S(real_of<S>(0)), functions<S>::reciprocal(x));
+}
+
+/// Whether a derivative is infinite; NaN is not.
+template <class S>
+MYRIAD_FUNCTION auto derivative_is_infinite(const S& d) {
+    const real_of<S> largest = largest_of<S>;
+    return functions<S>::abs(d) > largest;
+}
+template <class S>
+MYRIAD_FUNCTION auto derivative_is_infinite(const partial<S>& d) {
+    return detail::derivative_is_infinite(d.value);
+}
+
+/// quotient' of quotient = u / v: (du - quotient dv) / v. Where v has overflowed, or dv has and v nearly so, dv does
+/// not count: 1 / (1 + exp(c x)) has the derivative zero for large c x, which is its limit, and not NaN or infinite.
+template <class S, class Derivative>
+MYRIAD_FUNCTION Derivative weighted_unless_overflown(const S& quotient, const S& v, const Derivative& dv) {
+    const real_of<S> largest = largest_of<S>, huge = largest * real_of<S>(0x1p-32);
+    const S size = functions<S>::abs(v);
+    const mask_of<S> overflown = (size > largest) | ((size > huge) & derivative_is_infinite(dv));
+    return select(overflown, derivative_of_constant<Derivative>::get(), Derivative(quotient * dv));
+}
+template <class S, int count>
+MYRIAD_FUNCTION partials<S, count> weighted_unless_overflown(const S& quotient, const S& v,
+                                                             const partials<S, count>& dv) {
+    return partials<S, count>::each(
+        [&](auto i) MYRIAD_LAMBDA { return detail::weighted_unless_overflown(quotient, v, dv.in[i]); });
+}
+template <class S, class Derivative>
+MYRIAD_FUNCTION Derivative quotient_rule(const S& quotient, const Derivative& du, const S& v, const Derivative& dv) {
+    return (du - detail::weighted_unless_overflown(quotient, v, dv)) / v;
+}
+template <class S, class Derivative>
+MYRIAD_FUNCTION Derivative quotient_rule(const S& quotient, const S& v, const Derivative& dv) {
+    return -detail::weighted_unless_overflown(quotient, v, dv) / v;
+}
+template <class S, int count>
+MYRIAD_FUNCTION partials<S, count> quotient_rule(const S& quotient, const partials<S, count>& du, const S& v,
+                                                 const partials<S, count>& dv) {
+    return (du - detail::weighted_unless_overflown(quotient, v, dv)) * detail::reciprocal_or_zero(v);
+}
+template <class S, int count>
+MYRIAD_FUNCTION partials<S, count> quotient_rule(const S& quotient, const S& v, const partials<S, count>& dv) {
+    return -detail::weighted_unless_overflown(quotient, v, dv) * detail::reciprocal_or_zero(v);
 }
 
 /// a b + c

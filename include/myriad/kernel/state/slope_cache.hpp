@@ -49,8 +49,9 @@ public:
     /// Before a trial step.
     MYRIAD_FUNCTION void prepare(const S& t, const data& at, count& evaluations) {
         if constexpr (!keeps_start || !loses_start) return;
-        if constexpr (!Method::first_same_as_last) {
+        if constexpr (!Method::first_same_as_last && !has_delays<Model>) {
             // In every lane, as the slope is the trial's first stage: where it was known, the result has the same bits.
+            // With delays it may not have, as it may have been evaluated before the step that it looks up was written.
             const mask needed = !start_known_;
             if (!any(needed)) return;
             start_ = detail::evaluate_rhs<Model>(t, at.y, at);

@@ -58,6 +58,17 @@ struct fixed_state_on_path : fixed_state<S> {
         from = to = per_step = {typename integers::cell(0), typename integers::small(0)};
         path = {typename integers::word(0), typename integers::word(0)};
     }
+    /// An event has ended a step within a cell of lane i's path, which goes on with another: what a Wiener process does
+    /// after a time that it has itself decided is independent of what it did before.
+    MYRIAD_FUNCTION void begin_again(int i, const path_constants<real_of<S>>& constants) {
+        detail::set_place(from, i, path_place<real_of<S>>{0, 0});
+        path.begin_again(i, constants.key);
+    }
+    /// `interval` of lane i.
+    MYRIAD_FUNCTION void set_interval(path_interval<real_of<S>>& to_one, int i,
+                                      const path_constants<real_of<S>>& constants) const {
+        to_one = {detail::get_place(from, i), detail::get_place(to, i), path.of_lane(i), constants};
+    }
     MYRIAD_FUNCTION path_interval<S> interval(const path_constants<real_of<S>>& constants) const {
         return {from, to, path, constants};
     }

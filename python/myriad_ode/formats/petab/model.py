@@ -10,6 +10,7 @@ from typing import Any
 from ..sbml.document import library
 from ..sbml.math import Refused
 from ..sbml.model import SbmlModel, read_sbml
+from .formulas import parsed
 
 
 class PetabModel:
@@ -34,6 +35,14 @@ class PetabModel:
         rule = self._model.createAssignmentRule()
         rule.setVariable(name)
         rule.setMath(self._parsed(formula, where))
+        return name
+
+    def add_constant(self, name: str) -> str:
+        """Adds a parameter that nothing reads and instances set. Returns its id."""
+        name = self._unused(name)
+        self._add_parameter(name, constant=True)
+        self._model.getParameter(name).setValue(0.0)
+        self.swept.append(name)
         return name
 
     def add_placeholders(self, formula: Any, kind: str, observable: str) -> list[str]:
@@ -109,25 +118,4 @@ class PetabModel:
         made.setConstant(constant)
 
     def _parsed(self, formula: Any, where: str) -> Any:
-        text = str(formula)
-        if _has_base(text):
-            raise Refused(f"{where} is {text}, with a logarithm to a base: write log(x) / log(base)")
-        settings = self._libsbml.L3ParserSettings()
-        settings.setParseLog(self._libsbml.L3P_PARSE_LOG_AS_LN)  # as PEtab means it
-        tree = self._libsbml.parseL3FormulaWithSettings(text, settings)
-        if tree is None:
-            raise Refused(f"{where} is {text}: {' '.join(self._libsbml.getLastParseL3Error().split())}")
-        return tree
-
-
-def _has_base(text: str) -> bool:
-    """Whether a formula has log(x, base), whose arguments have the other order in SBML's formulas."""
-    for found in re.finditer(r"\blog\s*\(", text):
-        depth = 1
-        for letter in text[found.end():]:
-            depth += (letter == "(") - (letter == ")")
-            if depth == 0:
-                break
-            if letter == "," and depth == 1:
-                return True
-    return False
+        return parsed(str(formula), self._model, where)

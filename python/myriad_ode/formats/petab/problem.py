@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Problems of parameter estimation in PEtab's format, version 1: a model of SBML, and tables of observables,
-measurements, conditions and parameters."""
+"""Problems of parameter estimation in PEtab's format: a model of SBML, and tables of observables, measurements,
+conditions and parameters."""
 
 from __future__ import annotations
 
@@ -16,9 +16,12 @@ from ...inference.measurements import Given
 from ...inference.objective import Free
 from ...inference.priors import Prior
 from ..sbml.math import Refused
+from ..sbml.model import SbmlModel
 from .likelihood import Experiment, Observed, PetabLikelihood
 from .model import PetabModel
 from .priors import read_prior
+from .solutions import SteadyStates
+from .version2 import Tables, is_version_2, read_version_2
 
 if TYPE_CHECKING:
     from ...symbolic.types import Array, ByComponent, Path, Values
@@ -32,7 +35,7 @@ class PetabProblem:
     def __init__(self, experiment: Experiment, nominal: dict[str, float], measurements: Any) -> None:
         self._experiment = experiment
         self.model = experiment.model  #: the model, with a rule for each observable and its noise
-        self.conditions = experiment.conditions  #: the names of the conditions with measurements
+        self.conditions = experiment.conditions  #: of the measurements, as "drug" or "drug after rest", a steady state
         #: bounds of the parameters to estimate
         self.free = {f.name: (f.least, f.most, *(("log",) if f.log else ())) for f in experiment.free}
         self.nominal = nominal  #: the nominal values of these
@@ -64,12 +67,14 @@ class PetabProblem:
 
 
 def read_petab(path: Path) -> PetabProblem:
-    """The problem of a YAML file of PEtab, version 1. It needs the packages petab and python-libsbml.
+    """The problem of a YAML file of PEtab, version 1 or 2. It needs the packages petab and python-libsbml.
 
     Several conditions, observables and noise by any formula with placeholders that measurements set, noise that is
     estimated, normally distributed on a linear or logarithmic scale, priors that are normal or Laplace's on some
-    scale, or uniform. Raises `my.Error` with table, row and column for what is not supported: preequilibration, steady
-    states, noise of Laplace's distribution; and for what petab itself finds wrong."""
+    scale, or uniform. Experiments that begin in steady states of other conditions, and measurements in steady states,
+    at the time inf. Of version 2 also experiments of several periods, whose conditions change values at given times by
+    formulas. Raises `my.Error` with table, row and column for what is not supported, as noise of Laplace's
+    distribution, and for what petab itself finds wrong."""
     return _Reader(_read(path)).problem()
 
 
@@ -84,7 +89,7 @@ class _Said(logging.Handler):
         self.messages.append(record.getMessage())
 
 
-def _read(path: Path) -> Any:
+def _read(path: Path) -> Tables:
     try:
         from petab import v1
     except ImportError:
@@ -92,6 +97,8 @@ def _read(path: Path) -> Any:
     name = os.fspath(path)
     if not os.path.isfile(name):
         raise Error(f"there is no file '{name}': give the path of a YAML file of PEtab")
+    if is_version_2(name):
+        return read_version_2(name)
     said, log = _Said(), logging.getLogger("petab.v1")
     propagates, log.propagate = log.propagate, False
     log.addHandler(said)
@@ -109,7 +116,8 @@ def _read(path: Path) -> Any:
         raise Refused(f"the model is {problem.model.type_id}, not SBML")
     if problem.mapping_df is not None:
         raise Refused("there is a mapping table")
-    return problem
+    return Tables(problem.parameter_df, problem.observable_df, problem.measurement_df, problem.condition_df,
+                  problem.model.to_sbml_str(), problem.sbml_model, {}, {}, problem.measurement_df)
 
 
 def _is_given(value: Any) -> bool:
@@ -126,10 +134,11 @@ def _number(value: Any) -> float | None:
 class _Reader:
     """Turns the tables of a problem, as petab reads them, into what a likelihood is computed from."""
 
-    def __init__(self, problem: Any) -> None:
+    def __init__(self, problem: Tables) -> None:
+        self._tables = problem
         self._parameters, self._observables = problem.parameter_df, problem.observable_df
         self._measurements, self._table = problem.measurement_df, problem.condition_df
-        self._made = PetabModel(problem.model.to_sbml_str())
+        self._made = PetabModel(problem.sbml)
         self._free: list[Free] = []
         self._set_to_free: dict[str, int] = {}
         self._fixed: dict[str, float] = {}
@@ -141,26 +150,37 @@ class _Reader:
     def problem(self) -> PetabProblem:
         for name, row in self._parameters.iterrows():
             self._parameter(str(name), row)
-        self._refuse_steady_states()
-        self._conditions = list(dict.fromkeys(self._measurements["simulationConditionId"]))
+        self._experiments()
         self._set_conditions()
         observed = [self._observed(str(name), row) for name, row in self._observables.iterrows()
                     if (self._measurements["observableId"] == name).any()]
-        model = self._made.read()
+        model, of_experiments, before = self._of_experiments(self._made.read())
 
         def of_components(given: dict[str, Given]) -> dict[str, Given]:
             return {model.aliases.get(name, name): values for name, values in given.items()}
 
-        number = {name: c for c, name in enumerate(self._conditions)}
+        times = self._measurements["time"].to_numpy(float)
+        sampled = self._measurements.get("sampled", self._measurements["time"]).to_numpy(float)
+        numbers = {b: i for i, b in enumerate(self._befores)}
+        steady = SteadyStates([str(b) for b in self._befores], np.array([numbers.get(b, -1) for b, _ in self._pairs]),
+                              of_components(before),
+                              {model.stored.get(name, name): rows for name, rows in self._reset.items()},
+                              np.unique(self._experiment_of[np.isinf(times)]))
         experiment = Experiment(
-            model, self._free, self._conditions, of_components(self._set_to),
-            np.array([number[c] for c in self._measurements["simulationConditionId"]]),
-            self._measurements["time"].to_numpy(float), self._measurements["measurement"].to_numpy(float),
+            model, self._free, [self._name_of(b, c) for b, c in self._pairs],
+            of_components(of_experiments), self._experiment_of, times, sampled,
+            self._measurements["measurement"].to_numpy(float),
             [Observed(name, model.outputs[value], model.outputs[noise], scale, rows, of_components(placeholders))
-             for name, value, noise, scale, rows, placeholders in observed], self._priors)
+             for name, value, noise, scale, rows, placeholders in observed], self._priors, steady,
+            np.array([self._tables.begins.get(c, 0.0) for _, c in self._pairs]))
         nominal = self._parameters["nominalValue"] if "nominalValue" in self._parameters else {}
         return PetabProblem(experiment, {f.name: float(nominal.get(f.name, np.nan)) for f in self._free},
-                            self._measurements)
+                            self._tables.measured)
+
+    def _name_of(self, before: str | None, condition: str) -> str:
+        """What an experiment is called: as in version 2, or as its conditions."""
+        names = self._tables.names
+        return names[condition] if names else condition if before is None else f"{condition} after {before}"
 
     def _parameter(self, name: str, row: Any) -> None:
         """A row of the table of parameters."""
@@ -175,21 +195,23 @@ class _Reader:
         if prior is not None:
             self._priors.append((len(self._free) - 1, prior))
 
-    def _refuse_steady_states(self) -> None:
+    def _experiments(self) -> None:
+        """The experiments of the measurements, each at a condition, some after a steady state of another."""
         table = self._measurements
-        if "preequilibrationConditionId" in table:
-            for number, before in enumerate(table["preequilibrationConditionId"], 1):
-                if _is_given(before):
-                    raise Refused(f"the measurement table, row {number}, column preequilibrationConditionId: {before}, "
-                                  "a steady state from which the measurement begins")
-        steady = np.flatnonzero(np.isinf(table["time"].to_numpy(float)))
-        if steady.size:
-            raise Refused(f"the measurement table, row {steady[0] + 1}, column time: a measurement of "
-                          f"'{table['observableId'].iloc[steady[0]]}' in a steady state")
+        before = (table["preequilibrationConditionId"] if "preequilibrationConditionId" in table else
+                  [None] * len(table))
+        pairs = [(b if _is_given(b) else None, c) for b, c in zip(before, table["simulationConditionId"])]
+        self._pairs = list(dict.fromkeys(pairs))
+        self._befores = list(dict.fromkeys(b for b, _ in self._pairs if b is not None))
+        number = {pair: i for i, pair in enumerate(self._pairs)}
+        self._experiment_of = np.array([number[pair] for pair in pairs])
+        self._conditions = list(dict.fromkeys([*(c for _, c in self._pairs), *self._befores]))
 
     def _set_conditions(self) -> None:
         """What conditions set parameters to."""
         self._set_to = {name: Given.of([(k, 0.0)] * len(self._conditions)) for name, k in self._set_to_free.items()}
+        self._reset: dict[str, Array] = {}  # by target, whether experiments set it anew
+        at_start = {*self._befores, *(c for b, c in self._pairs if b is None)}
         for target in self._table.columns:
             cells = {c: self._table.loc[c, target] for c in self._conditions}
             if target == "conditionName" or not any(_is_given(cell) for cell in cells.values()):
@@ -197,6 +219,7 @@ class _Reader:
             if target in self._parameters.index:
                 raise Refused(f"the condition table, column {target}: the table of parameters has '{target}' too")
             parameter = self._made.set(target, "the condition table")
+            self._reset[target] = np.array([_is_given(cells[c]) for _, c in self._pairs])
             resolved = []
             for condition, cell in cells.items():
                 where = f"the condition table, row '{condition}', column {target}"
@@ -204,9 +227,32 @@ class _Reader:
                     resolved.append(self._resolved(cell, condition, where))
                 elif target in self._made.file_values:
                     resolved.append((-1, self._made.file_values[target]))
+                elif parameter != target and condition not in at_start:
+                    resolved.append((-1, 0.0))  # not read, as it has its value in the steady state
                 else:
                     raise Refused(f"{where}: there is no value, and that of the model is no number")
             self._set_to[parameter] = Given.of(resolved)
+
+    def _of_experiments(self, model: SbmlModel) -> tuple[SbmlModel, dict[str, Given], dict[str, Given]]:
+        """What experiments set parameters to, and the steady states before them. What is estimated and nothing of an
+        experiment but of the steady state before is the value of a parameter that nothing reads, so that there are
+        derivatives by it."""
+        number = {c: i for i, c in enumerate(self._conditions)}
+        experiments = [number[c] for _, c in self._pairs]
+        befores = [number[c] for c in self._befores]
+        of_experiments = {name: given.at(np.array(experiments, int)) for name, given in self._set_to.items()}
+        before = {name: given.at(np.array(befores, int)) for name, given in self._set_to.items()}
+        of_model = [g for name, g in self._set_to.items() if model.aliases.get(name, name) in model.parameters]
+
+        def free(condition: str | None) -> set[int]:
+            return {int(given.free[number[condition]]) for given in of_model} - {-1} if condition is not None else set()
+
+        missing = [sorted(free(b) - free(c)) for b, c in self._pairs]
+        most = max(map(len, missing))
+        for place in range(most):
+            given = Given.of([(of[place], 0.0) if place < len(of) else (-1, 0.0) for of in missing])
+            of_experiments[self._made.add_constant(f"before_{place + 1}")] = given
+        return self._made.read() if most else model, of_experiments, before
 
     def _resolved(self, cell: Any, condition: str, where: str, asked: tuple[str, ...] = ()) -> tuple[int, float]:
         """What a cell of a table stands for: the number of a free component, or -1 and a number."""

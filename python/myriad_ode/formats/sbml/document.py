@@ -4,13 +4,16 @@
 from __future__ import annotations
 
 import os
+import re
 from typing import Any
 
 from ...base.errors import Error
 from .math import Refused
 
 
-_harmless = 1002, 10313  # libsbml's numbers of two errors: no encoding is named; a unit is not there
+# libsbml's numbers of errors: no encoding is named; a unit, or a unit that it is made of, is not there
+_harmless = 1002, 10313, 20410
+_pictures = "layout", "render"  # packages that say how a model is drawn, and nothing about what it means
 
 
 def library() -> Any:
@@ -84,10 +87,21 @@ def _written_out(libsbml: Any, model: Any) -> int:
 
 
 def _errors(libsbml: Any, document: Any) -> list[Any]:
-    for number in _harmless:
-        document.getErrorLog().removeAll(number)  # else libsbml stops there
+    log = document.getErrorLog()
+    found = [document.getError(i) for i in range(document.getNumErrors())]
+    counting = {e.getErrorId() for e in found if not _is_of_pictures(e)} - {*_harmless}
+    for number in {e.getErrorId() for e in found} - counting:
+        log.removeAll(number)  # else libsbml stops there
     errors = [document.getError(i) for i in range(document.getNumErrors())]
-    return [e for e in errors if e.getSeverity() in (libsbml.LIBSBML_SEV_ERROR, libsbml.LIBSBML_SEV_FATAL)]
+    return [e for e in errors if e.getSeverity() in (libsbml.LIBSBML_SEV_ERROR, libsbml.LIBSBML_SEV_FATAL)
+            and not _is_of_pictures(e)]
+
+
+def _is_of_pictures(error: Any) -> bool:
+    """Whether an error is one of a package that draws the model. What such a package has where it may not be, as in a
+    document of Level 2, counts as the core's, and only the message names the package."""
+    return error.getPackage() in _pictures or any(re.search(rf"\bpackage '?{name}", error.getMessage(), re.IGNORECASE)
+                                                  for name in _pictures)
 
 
 def _refuse_packages(document: Any) -> None:

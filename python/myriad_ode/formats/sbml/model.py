@@ -143,6 +143,7 @@ class SbmlModel(Model):
         self.outputs: dict[str, Any] = {n: e for n, e in outputs.items() if not (
             e.op == "symbol" and e.value[0] in ("state", "parameter") and e.value[1] == n and e not in constants)}
         units = Units(semantics.libsbml, semantics.model)
+        self.stored = {q: n for q, n in semantics.names.items() if q in semantics.quantities}
         self.units, self.time_unit = _units(semantics, units), units.time()
         self.aliases = {id: component for id, component in semantics.names.items()
                         if id != component and not (

@@ -87,8 +87,8 @@ class Semantics:
             definition = self.model.getFunctionDefinition(i)
             self.functions.definitions[definition.getId()] = definition
         for c in self._all("Compartment"):
-            given = c.getSize() if c.isSetSize() or self.level == 1 else None
-            self._add(Quantity(c.getId(), "compartment", c, given))
+            # as in Level 1, and in other programs, the size is 1 where the file leaves it out
+            self._add(Quantity(c.getId(), "compartment", c, c.getSize() if c.isSetSize() else 1.0))
         for p in self._all("Parameter"):
             self._add(Quantity(p.getId(), "parameter", p, p.getValue() if p.isSetValue() else None))
         for i in range(self.model.getNumSpecies()):

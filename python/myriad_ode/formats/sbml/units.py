@@ -5,54 +5,20 @@ from __future__ import annotations
 
 from typing import Any
 
-_short = {"mole": "mol", "litre": "l", "liter": "l", "second": "s", "metre": "m", "meter": "m", "gram": "g",
-          "kilogram": "kg", "item": "items", "dimensionless": "", "kelvin": "K", "ampere": "A", "volt": "V",
-          "joule": "J", "newton": "N", "pascal": "Pa", "hertz": "Hz", "coulomb": "C", "watt": "W", "farad": "F",
-          "siemens": "S", "ohm": "Ω", "weber": "Wb", "tesla": "T", "henry": "H", "lumen": "lm", "lux": "lx",
-          "becquerel": "Bq", "gray": "Gy", "sievert": "Sv", "katal": "kat", "candela": "cd", "radian": "rad",
-          "steradian": "sr", "avogadro": "N_A"}
-_prefixes = {0: "", -1: "d", -2: "c", -3: "m", -6: "µ", -9: "n", -12: "p", -15: "f", 3: "k", 6: "M", 9: "G"}
-_times = {60.0: "min", 3600.0: "h", 86400.0: "d", 604800.0: "weeks"}
+from .. import unit_text
+from ..unit_text import Factor
+
 # Of Levels 1 and 2, unless a file defines them; an area is a square.
 _predefined = {"substance": "mole", "time": "second", "length": "metre", "area": "metre", "volume": "litre"}
-_powers = {2.0: "²", 3.0: "³"}
-
-
-def _factor(libsbml: Any, unit: Any) -> tuple[str, float]:
-    """A unit without its exponent, and its exponent."""
-    exponent = unit.getExponentAsDouble()
-    kind = libsbml.UnitKind_toString(unit.getKind())
-    name, scale, multiplier = _short.get(kind, kind), unit.getScale(), unit.getMultiplier()
-    if multiplier == 1 and scale in _prefixes and (name or scale == 0):
-        return _prefixes[scale] + name, exponent
-    size = multiplier * 10.0**scale
-    if kind == "second" and round(size, 6) in _times:
-        return _times[round(size, 6)], exponent
-    return f"{size:g} {name}".strip(), exponent
 
 
 def text_of(libsbml: Any, definition: Any) -> str:
     """A unit as "mmol/l"; empty where it is not known or has no dimension."""
-    if definition is None or definition.getNumUnits() == 0:
+    units = [] if definition is None else [definition.getUnit(i) for i in range(definition.getNumUnits())]
+    if any(unit.getKind() == libsbml.UNIT_KIND_INVALID for unit in units):
         return ""
-    above: list[str] = []
-    below: list[str] = []
-    for i in range(definition.getNumUnits()):
-        unit = definition.getUnit(i)
-        if unit.getKind() == libsbml.UNIT_KIND_INVALID:
-            return ""
-        name, exponent = _factor(libsbml, unit)
-        if not name or exponent == 0:
-            continue
-        size = abs(exponent)
-        power = "" if size == 1 else _powers.get(size, f"^{size:g}")
-        if power and " " in name:
-            name = f"({name})"
-        (above if exponent > 0 else below).append(name + power)
-    if not below:
-        return "·".join(above)
-    bottom = below[0] if len(below) == 1 else f"({'·'.join(below)})"
-    return f"{'·'.join(above) or '1'}/{bottom}"
+    return unit_text.text_of(Factor(libsbml.UnitKind_toString(unit.getKind()), unit.getScale(), unit.getMultiplier(),
+                                    unit.getExponentAsDouble()) for unit in units)
 
 
 class Units:

@@ -15,12 +15,11 @@ from ...base.errors import Error, users_line
 from ...codegen.model import Model
 from ...models.delays import own_names
 from ...models.event import Event, event
-from ...symbolic import expression as ex, symbols as sym
+from ...symbolic import symbols as sym
 from ...symbolic.delays import pasts_of
 from ...symbolic.derivatives import derivatives
-from ...symbolic.evaluate import evaluate
 from ...symbolic.node import symbols_of
-from ...symbolic.folding import add, compare, constant, is_constant, multiply, subtract, value_of
+from ...symbolic.folding import add, compare, constant, divide, is_constant, multiply, subtract, value_of
 from ...symbolic.interpolate import interpolate
 from ...symbolic.rewrite import rebuilt
 from ..deep_stack import deeply
@@ -43,10 +42,14 @@ def read_xpp(source: Path | str, *, name: str | None = None) -> XppModel:
     `model.time` are the ends of the time domain, `model.settings` all that stands behind `@`, and `model.sets` the
     values of `set` by name.
 
+    An unknown of algebraic equations, `0=` with `solv`, is a state of a mass matrix, whose equation has no derivative:
+    method="rodas_5p", and make_consistent=True to begin with a solution. `model.boundary_conditions` has the texts of
+    `bdry`, which the initial value problem does not need.
+
     `delay(x, tau)` is `my.delayed`; before the begin x is what `x(0)=` says, also as a function of t, else zero.
 
-    Raises `my.Error` with the line for what is not supported: maps, integrals over the past, random
-    numbers and Markov processes, algebraic equations, boundary conditions, networks of `special`.
+    Raises `my.Error` with the line for what is not supported: maps, integrals over the past, random numbers and Markov
+    processes, networks of `special`, libraries.
     """
     text, folder, called = _text_of(source)
     return deeply(lambda: XppModel(OdeFile(text, folder), name or called))
@@ -79,7 +82,8 @@ _sums = {"add": add, "subtract": subtract, "multiply": _product}  # in which noi
 
 class XppModel(Model):
     """A model from an .ode file. `outputs` are expressions by name that a run computes; `time` are the ends of the time
-    domain, `settings` what stands behind @ by name, and `sets` values by component of each `set`."""
+    domain, `settings` what stands behind @ by name, `sets` values by component of each `set`, and
+    `boundary_conditions` what is zero at the ends of a solution of the file's boundary value problem, as texts."""
 
     is_from_a_file = True
 
@@ -87,12 +91,12 @@ class XppModel(Model):
         parts = file.parts
         self._taken: dict[str, str] = dict.fromkeys(own_names, "") if file.has_delays else {}
         self._ids = {*parts.equations, *parts.parameters, *parts.derived, *parts.quantities, *parts.outputs,
-                     *parts.processes}
-        states = {n: sym.symbol("state", self._component(n, n)) for n in parts.equations}
+                     *parts.processes, *parts.unknowns}
+        states = {n: sym.symbol("state", self._component(n, n)) for n in (*parts.equations, *parts.unknowns)}
         parameters = {n: sym.symbol("parameter", self._component(n, n)) for n in parts.parameters}
         self._processes = [sym.symbol("noise", self._component(n, n)) for n in parts.processes]
         names = Names()
-        names.series = [list(states), list(parts.quantities)]
+        names.series = [list(parts.equations), list(parts.quantities)]
         names.values = {"t": sym.time, "pi": constant(np.pi), **{n: constant(v) for n, v in parts.numbers.items()},
                         **parameters, **states, **dict(zip(parts.processes, self._processes))}
         names.functions = {n: (arguments, body) for n, (_, arguments, body) in parts.functions.items()}
@@ -106,9 +110,16 @@ class XppModel(Model):
         noise: dict[Any, dict[Any, Any]] = {}
         equations = {states[n]: self._slope(line, text, names, noise.setdefault(states[n], {}))
                      for n, (line, text) in parts.equations.items()}
+        for n, (line, text) in zip(parts.unknowns, parts.residuals):
+            of_none: dict[Any, Any] = {}
+            equations[states[n]] = self._slope(line, text, names, of_none)
+            if of_none:
+                line.refuse("an algebraic equation has noise, and so its solution no derivative: give noise to "
+                            "differential equations alone, in a file without algebraic ones")
+        if parts.unknowns and any(noise.values()):
+            parts.residuals[0][0].refuse("algebraic equations beside noise, which no method takes: solve them in the "
+                                         "others")
         noise = {state: factors for state, factors in noise.items() if factors}
-        if noise and parts.events:
-            parts.events[0].line.refuse("a model with noise has no events yet: its paths are too rough to locate them")
         events = [self._event(one, number, names, states, parameters) for number, one in enumerate(parts.events, 1)]
         before = self._history(parts, states, names) if file.has_delays else {}
         read = {past.value[1].state for past in pasts_of([*equations.values(), *(
@@ -116,18 +127,11 @@ class XppModel(Model):
         name = self._component(re.sub("_+", "_", re.sub(r"\W", "_", in_ascii(name.lower()))).strip("_") or "model")
         self._reserved = {*self._taken, *self._ids}
         super().__init__(equations, events, None, None, None, None, None, None, list(parameters.values()), (), name,
-                         noise=noise, history={s: b for s, b in before.items() if s in read})
+                         mass_matrix={states[n]: 0.0 for n in parts.unknowns} or None, noise=noise,
+                         history={s: b for s, b in before.items() if s in read})
         self.line, self.hidden = users_line(), frozenset(self.accessories)
         self.defaults: dict[str, Any] = {**self.shared_values}
-        for n, symbol in states.items():
-            self.defaults[symbol.value[1]] = constant(0.0)
-            if n in parts.initial:
-                line, text = parts.initial.pop(n)
-                value = self.defaults[symbol.value[1]] = _in_line(line, text, names)
-                if any(s.value[0] in ("state", "noise", "delayed") for s in symbols_of([value])):
-                    line.refuse("an initial value depends on a state or on noise")
-        for line, _ in parts.initial.values():
-            line.refuse("it gives an initial value to what has no equation")
+        self._set_initial_values(parts, states, names)
         for n, symbol in parameters.items():
             self.defaults[symbol.value[1]] = constant(parts.parameters[n])
         components = {n: symbol.value[1] for n, symbol in (*states.items(), *parameters.items())}
@@ -135,10 +139,24 @@ class XppModel(Model):
                         for alias in (n, file.spelled.get(n, n)) if alias != component}
         self._set_outputs(file, names, components)
         self.history_of_outputs = {state.value[1]: value for state, value in before.items()}
+        self.boundary_conditions = file.boundary
         self.settings, begin = file.settings, file.settings.get("t0", 0.0)
         self.time = (begin, begin + file.settings.get("total", 20.0))
         self.sets = {given: {components[n]: v for n, v in values.items() if n in components}
                      for given, values in file.sets.items()}
+
+    def _set_initial_values(self, parts: Parts, states: dict[str, Any], names: Names) -> None:
+        """The values at the start: what the file says, the guesses of unknowns, else zero."""
+        for n, symbol in states.items():
+            self.defaults[symbol.value[1]] = constant(0.0)
+            given = parts.initial.pop(n, parts.unknowns.get(n))
+            if given is not None:
+                line, text = given
+                value = self.defaults[symbol.value[1]] = _in_line(line, text, names)
+                if any(s.value[0] in ("state", "noise", "delayed") for s in symbols_of([value])):
+                    line.refuse("an initial value depends on a state or on noise")
+        for line, _ in parts.initial.values():
+            line.refuse("it gives an initial value to what has no equation")
 
     def _set_outputs(self, file: OdeFile, names: Names, components: dict[str, str]) -> None:
         """What a run has besides components, those that read the past apart, and also as the file spells them."""
@@ -217,29 +235,34 @@ def _table(file: OdeFile, line: Line, name: str, what: str, names: Names, compon
     x, y, kind = _points_of_formula(line, what, names) if what.startswith("%") else _points_of_file(file, line, what)
     if kind == "step":
         line.refuse("tables of steps are not supported")
+    known = all(is_constant(one) for one in y)
+    values = np.array([value_of(one) for one in y]) if known else None
 
     def function(argument: Any) -> Any:
         if is_constant(argument):
-            symbol = ex.make("symbol", value=("argument", "0"))
-            found, = evaluate([interpolate(symbol, x, y, "linear", "extrapolate", component)],
-                              {symbol: np.float64(value_of(argument))})
-            return constant(found)
-        return interpolate(argument, x, y, "linear", "extrapolate", component)
+            place = float(value_of(argument))
+            row = int(np.clip(np.searchsorted(x, place, side="right") - 1, 0, len(x) - 2))
+            slope = divide(subtract(y[row + 1], y[row]), constant(x[row + 1] - x[row]))
+            return add(y[row], multiply(constant(place - x[row]), slope)) if place != x[row] else y[row]
+        if values is None:
+            raise NoFormula(f"the table `{name}` has values that depend on parameters, and is looked up at what varies")
+        return interpolate(argument, x, values, "linear", "extrapolate", component)
 
     return function
 
 
-def _points_of_formula(line: Line, what: str, names: Names) -> tuple[Any, Any, str]:
+def _points_of_formula(line: Line, what: str, names: Names) -> tuple[Any, list[Any], str]:
     found = re.fullmatch(r"%\s*(\d+)\s+(\S+)\s+(\S+)\s+(.+)", what)
     if not found or not (is_number(found[2]) and is_number(found[3])) or int(found[1]) < 2:
         line.refuse("a table of a formula is written table name % points low high formula")
     x = np.linspace(float(found[2]), float(found[3]), int(found[1]))
-    expression = _in_line(line, found[4], names)
-    if any(s is not sym.time for s in symbols_of([expression])):
-        line.refuse("a table of a formula of states or parameters is not supported")
-    if is_constant(expression):
-        return x, np.full(x.shape, float(value_of(expression))), "linear"
-    return x, np.asarray(evaluate([expression], {sym.time: x})[0], float), "linear"
+    try:
+        y = [formula(found[4].strip(), names, {"t": constant(float(at))}) for at in x]
+    except NoFormula as why:
+        line.refuse(str(why))
+    if any(s.value[0] != "parameter" for s in symbols_of(y)):
+        line.refuse("a table of a formula of states is not supported")
+    return x, y, "linear"
 
 
 def _points_of_file(file: OdeFile, line: Line, what: str) -> tuple[Any, Any, str]:
@@ -253,7 +276,7 @@ def _points_of_file(file: OdeFile, line: Line, what: str) -> tuple[Any, Any, str
     try:
         if values[0].lower() == "xyvals":
             pairs = np.array(values[2:2 + 2 * int(values[1])], float).reshape(int(values[1]), 2)
-            return pairs[:, 0], pairs[:, 1], "linear"
+            return pairs[:, 0], [constant(one) for one in pairs[:, 1]], "linear"
         kind = {"i": "step", "s": "spline"}.get(values[0][0].lower(), "linear")
         count = int(values[0].lstrip("isIS"))
         low, high = float(values[1]), float(values[2])
@@ -264,4 +287,4 @@ def _points_of_file(file: OdeFile, line: Line, what: str) -> tuple[Any, Any, str
         line.refuse(f"'{path}' has no number of points, two ends and as many values")
     if kind == "spline":
         line.refuse("tables with splines are not supported")
-    return np.linspace(low, high, count), y, kind
+    return np.linspace(low, high, count), [constant(one) for one in y], kind

@@ -47,9 +47,12 @@ class Parts:
     tables: list[tuple[Line, str, str]] = field(default_factory=list)
     processes: dict[str, Line] = field(default_factory=dict)
     events: list[Global] = field(default_factory=list)
+    residuals: list[tuple[Line, str]] = field(default_factory=list)  #: that are zero: those of 0=
+    unknowns: dict[str, tuple[Line, str]] = field(default_factory=dict)  #: of these, with a first guess
 
 
 _statement = re.compile(r"([a-z]+)\s+(?![=(])(.*)", re.DOTALL)
+_condition = re.compile(r"(b[a-z]*)\s+(\([^=]*)")  # of a boundary, in parentheses
 _equation = re.compile(r"(?:([a-z]\w*)\s*'|d([a-z]\w*)\s*/\s*dt)\s*=(?!=)(.*)")
 _of_arguments = re.compile(r"([a-z]\w*)\s*\(([^()]*)\)\s*=(?!=)(.*)")
 _definition = re.compile(r"([a-z]\w*)\s*=(?!=)(.*)")
@@ -62,11 +65,12 @@ _kinds = {"p": "parameter", "i": "init", "n": "number", "a": "aux", "g": "global
           "m": "markov", "b": "bdry", "o": "options", "v": "volterra"}
 _words = ("params", "parameters", "init", "number", "aux", "auxiliary", "global", "table", "wiener",
           "markov", "bdry", "bndry", "boundary", "options", "volterra", "set", "special", "solve", "solv", "export")
-_refused = {"markov": "Markov processes are not supported",
-            "bdry": "boundary conditions are not supported", "volterra": "integrals over the past are not supported",
+_integral = ("integrals over the past are not supported: write a kernel exp(-t/tau) as an equation of its own, "
+             "w'=x-w/tau, and other kernels as chains of such equations")
+_map = "a map has no derivatives, and is not supported: iterate it in NumPy, or write x'= where an equation is meant"
+_refused = {"markov": "Markov processes are not supported: write the equation of their mean, or delete the line",
+            "volterra": _integral,
             "special": "networks of `special` are not supported: write the sums out, as by sum(0,n)of(...)",
-            "solve": "algebraic equations are not supported", "solv": "algebraic equations are not supported",
-            "export": "libraries of functions are not supported",
             "options": "files of options are not read: write them behind @"}
 
 
@@ -74,7 +78,7 @@ def _kind_of(word: str) -> str | None:
     """Which statement a word begins."""
     if word in ("set", "special", "solve", "solv", "export"):
         return word
-    if any(known.startswith(word) for known in _words) and word[0] in _kinds:
+    if any(known.startswith(word) or word.startswith(known[:3]) for known in _words) and word[0] in _kinds:
         return _kinds[word[0]]
     return None
 
@@ -115,10 +119,21 @@ class OdeFile:
         self.settings: dict[str, Any] = {}
         self.sets: dict[str, dict[str, float]] = {}
         self.parts = Parts()
+        self.boundary: list[str] = []  # what is zero at the ends of a solution of the boundary value problem
+        self.exported: Line | None = None  # what a library of functions computes
         text, self.spelled = _names_in_ascii(text)  # names as the file has them
         self.has_delays = re.search(r"\b(delay|del_shft)\s*\(", text.lower()) is not None
+        self.as_map: Line | None = None  # the option by which the equations are those of a map
         for line in self._lines(text):
             self._read(line)
+        if self.as_map:
+            self.as_map.refuse(_map)
+        if self.exported and {"dll_lib", "dll_fun"} & {*self.settings}:
+            self.exported.refuse("the library that the options name is not called: write what it computes as formulas")
+        if len(self.parts.residuals) != len(self.parts.unknowns):
+            line, _ = [*self.parts.residuals, *self.parts.unknowns.values()][0]
+            line.refuse(f"there are {len(self.parts.residuals)} algebraic equations, 0=, for "
+                        f"{len(self.parts.unknowns)} unknowns of solv")
         if not self.parts.equations:
             raise Error("the file has no equation: write x'=... or dx/dt=...")
 
@@ -137,7 +152,7 @@ class OdeFile:
         for line in joined:
             if line.text[:1] in ("", "#", '"'):
                 continue
-            if re.fullmatch("(?i)d(one)?", line.text):
+            if re.fullmatch(r"(?i)d\w*", line.text):  # as XPPAUT, which reads no more than the first letter of `done`
                 return
             if line.text.startswith("%"):
                 if group is not None:
@@ -192,7 +207,7 @@ class OdeFile:
         text = line.text.lower()
         parts = self.parts
         if text.startswith("@"):
-            self._settings(line.text[1:])
+            self._settings(line)
             return
         if text.startswith("!"):
             found = _definition.fullmatch(text[1:].strip())
@@ -200,7 +215,7 @@ class OdeFile:
                 line.refuse("a derived parameter is written !name=formula")
             self._new(line, found[1], parts.derived, (line, found[2]))
             return
-        statement = _statement.fullmatch(text)
+        statement = _statement.fullmatch(text) or _condition.fullmatch(text)
         kind = _kind_of(statement[1]) if statement else None
         if statement and kind:
             self._statement(line, kind, statement[2].strip())
@@ -210,11 +225,13 @@ class OdeFile:
         if text.isdigit() and not parts.equations:  # how many equations follow
             return
         if re.search(r"\bint\s*[\[{]", text):
-            line.refuse("integral equations are not supported")
-        if re.match(r"0\s*=", text):
-            line.refuse("algebraic equations are not supported")
+            line.refuse(_integral)
+        found = re.fullmatch(r"0\s*=(?!=)(.*)", text)
+        if found:
+            parts.residuals.append((line, found[1]))
+            return
         if re.match(r"[a-z]\w*\s*\(\s*t\s*\+\s*1\s*\)\s*=", text):
-            line.refuse("a map has no derivatives, and is not supported")
+            line.refuse(_map)
         found = _equation.fullmatch(text)
         if found:
             self._new(line, found[1] or found[2], parts.equations, (line, found[3]))
@@ -233,7 +250,7 @@ class OdeFile:
         if name in words:
             line.refuse(f"`{name}` has a meaning of its own and names no quantity")
         for known in (parts.equations, parts.parameters, parts.numbers, parts.derived, parts.quantities,
-                      parts.functions, parts.processes):
+                      parts.functions, parts.processes, parts.unknowns):
             if name in known:
                 line.refuse(f"`{name}` is defined a second time")
         among[name] = value
@@ -248,32 +265,43 @@ class OdeFile:
             self._new(line, name, self.parts.functions, (line, wanted, value))
 
     def _statement(self, line: Line, kind: str, rest: str) -> None:
+        parts = self.parts
         if kind in _refused:
             line.refuse(_refused[kind])
         if kind in ("parameter", "number"):
-            among = self.parts.parameters if kind == "parameter" else self.parts.numbers
+            among = parts.parameters if kind == "parameter" else parts.numbers
             for name, value in self._pairs(line, rest):
                 self._new(line, name, among, self._number(line, value))
         elif kind == "init":
             for name, value in self._pairs(line, rest):
-                self.parts.initial[name] = (line, value)
+                parts.initial[name] = (line, value)
         elif kind == "aux":
-            found = _definition.fullmatch(rest)
+            found = re.fullmatch(r"([a-z][^\s=]*)\s*=(?!=)(.*)", rest)
             if not found:
                 line.refuse("an auxiliary quantity is written aux name=formula")
-            self.parts.outputs[found[1]] = (line, found[2])
+            name = re.sub(r"\W+", "_", found[1]).strip("_")  # P.E. is p_e
+            parts.outputs[name] = (line, found[2])
+        elif kind in ("solv", "solve"):
+            found = re.fullmatch(r"([a-z]\w*)\s*(?:=(?!=)(.*))?", rest)
+            if not found:
+                line.refuse("an unknown of algebraic equations is written solv name=guess")
+            self._new(line, found[1], parts.unknowns, (line, found[2] or "0"))
+        elif kind == "bdry":
+            self.boundary.append(rest)
+        elif kind == "export":
+            self.exported = line
         elif kind == "global":
             self._global(line, rest)
         elif kind == "wiener":
             for name in re.split(r"[\s,]+", rest):
                 if not re.fullmatch(r"[a-z]\w*", name):
                     line.refuse("processes are written wiener name, name")
-                self._new(line, name, self.parts.processes, line)
+                self._new(line, name, parts.processes, line)
         elif kind == "table":
             name, _, what = rest.partition(" ")
-            self._new(line, name, self.parts.functions, (line, ["x"], ""))
-            del self.parts.functions[name]
-            self.parts.tables.append((line, name, what.strip()))
+            self._new(line, name, parts.functions, (line, ["x"], ""))
+            del parts.functions[name]
+            parts.tables.append((line, name, what.strip()))
         else:
             found = re.fullmatch(r"([a-z]\w*)\s*\{(.*)\}", rest)
             if not found:
@@ -294,9 +322,12 @@ class OdeFile:
             line.refuse(f"`{text}` is no number")
         return float(text)
 
-    def _settings(self, text: str) -> None:
-        for name, value in re.findall(r"(\w+)\s*=\s*([^\s,]+)", text):
+    def _settings(self, line: Line) -> None:
+        """Options; of one that is given twice the last holds."""
+        for name, value in re.findall(r"(\w+)\s*=\s*([^\s,]+)", line.text[1:]):
             self.settings[name.lower()] = float(value) if is_number(value) else value
+            if name.lower().startswith("meth"):  # of methods XPPAUT reads the first letter
+                self.as_map = line if value.lower().startswith("d") else None
 
     def _global(self, line: Line, text: str) -> None:
         found = re.fullmatch(r"([-+]?\d+)\s*(\{.*?\}|[^{}]*)\s*\{(.*)\}", text)

@@ -5,15 +5,15 @@
 
 #include <cstdint>
 
+#include "myriad/kernel/adjoint/adjoint_pack.hpp"
 #include "myriad/kernel/stepper/method_check.hpp"
 #include "myriad/methods.hpp"
 #include "myriad/model.hpp"
-#include "myriad/python/adjoint_pack.hpp"
 
 /// Makes the adjoint of a model and a method the program's. The arguments may not contain commas.
 #define MYRIAD_ADJOINT(Adjoint, Method)                                                         \
     extern "C" __global__ void __launch_bounds__(64)                                            \
-        myriad_adjoint(const __grid_constant__ myriad::python::adjoint_call call) {             \
+        myriad_adjoint(const __grid_constant__ myriad::detail::adjoint_call call) {             \
         const auto i = static_cast<std::int64_t>(blockIdx.x) * blockDim.x + threadIdx.x;        \
         if (i >= call.size) return;                                                             \
         if (call.values != nullptr) {                                                           \

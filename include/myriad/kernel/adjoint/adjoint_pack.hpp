@@ -3,35 +3,10 @@
 // pack, or the thread of a GPU.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 
-#include "myriad/kernel/stepper/transposed_step.hpp"
-
-namespace myriad::python {
-
-/// The records of steps, the samples that are taken of them, and what is computed; gradients/adjoint.py has the same
-/// members.
-/// Arrays of records are [record][instance], `values` and `weights` [instance][sample][quantity], `gradient`
-/// [instance][state or chosen parameter].
-struct adjoint_call {
-    std::int64_t size;           ///< number of instances
-    const std::int32_t* stored;  ///< number of records of each: the start, and the end of each step
-    const double* time;
-    const double* const* state;         ///< one array for each state
-    const double* const* acted;         ///< one for each action: how often it acted before
-    const double* const* acted_in_all;  ///< the same after the last record, by instance
-    const double* const* parameter;     ///< one array for each parameter, by instance
-    const double* shared;
-    const std::int32_t* shared_integer;
-    const double* sample_time;  ///< in the direction of time; null for one sample at the end, after actions there
-    std::int64_t samples;
-    double* values;         ///< for the quantities at the samples; null if the gradient is wanted
-    const double* weights;  ///< the derivatives of the loss by these quantities
-    double* gradient;       ///< for the derivatives of the loss by initial states and chosen parameters
-};
-
-}  // namespace myriad::python
+#include "myriad/kernel/adjoint/adjoint_call.hpp"
+#include "myriad/kernel/adjoint/transposed_step.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
@@ -50,7 +25,7 @@ class adjoint_pack {
 
 public:
     /// Of the instances from `first` on, before `end`.
-    adjoint_pack(const python::adjoint_call& call, std::int64_t first, std::int64_t end) : call_(call) {
+    adjoint_pack(const adjoint_call& call, std::int64_t first, std::int64_t end) : call_(call) {
         p_.shared = call.shared;
         p_.shared_integer = call.shared_integer;
         for (int i = 0; i < lanes; ++i) {
@@ -61,7 +36,7 @@ public:
             is_there_[i] = there && call.stored[instance_[i]] > 0;
             for (int c = 0; c < n_parameter<Adjoint>; ++c)
                 set_lane(p_.parameter[c], i, call.parameter[c][instance_[i]]);
-            read(i, std::max<std::int64_t>(next_step_[i] + 1, 0));
+            read(i, next_step_[i] >= 0 ? next_step_[i] + 1 : 0);
         }
         y_ = before_action<n_action>();
         loss_ = {};
@@ -80,7 +55,7 @@ public:
     }
 
 private:
-    const python::adjoint_call& call_;
+    const adjoint_call& call_;
     std::int64_t instance_[lanes], next_step_[lanes], next_sample_[lanes];
     bool is_there_[lanes];
     mask active_;  // lanes that have a step
@@ -123,22 +98,22 @@ private:
     }
     /// Goes back through the actions at the start of the step. The time of an event moves with the state before it:
     /// what Galan, Feehery and Barton, Appl. Numer. Math. 31 (1999) 17-47, have for sensitivities, transposed.
-    void transpose_actions(const mask& lanes) {
+    void transpose_actions(const mask& which) {
         if constexpr (n_action > 0)
-            static_for<0, n_action>([&](auto i) { transpose_action<n_action - 1 - decltype(i)::value>(lanes); });
+            static_for<0, n_action>([&](auto i) { transpose_action<n_action - 1 - decltype(i)::value>(which); });
     }
     template <int a>
-    void transpose_action(const mask& lanes) {
-        const mask acted = lanes & acted_[a];
+    void transpose_action(const mask& in) {
+        const mask acted = in & acted_[a];
         if (!any(acted)) return;
         constexpr int last = n + n_wrt;
-        constexpr constant_index<a> which;
+        constexpr constant_index<a> action;
         const auto before = before_action<a>();
-        auto product = Adjoint::template transposed_act<S>(t_, before, p_, loss_.state, which);
+        auto product = Adjoint::template transposed_act<S>(t_, before, p_, loss_.state, action);
         if constexpr (Adjoint::is_event[a]) {
             const auto slope = detail::evaluate_rhs<Adjoint>(t_, before, p_);
             const auto slope_after = detail::evaluate_rhs<Adjoint>(t_, y_, p_);
-            const auto event = Adjoint::template slope_of_event<S>(t_, before, p_, which);
+            const auto event = Adjoint::template slope_of_event<S>(t_, before, p_, action);
             S by_time = product[last], rate = event[last];
             for (int c = 0; c < n; ++c) {
                 by_time = fma(product[c], slope[c], fma(-loss_.state[c], slope_after[c], by_time));
