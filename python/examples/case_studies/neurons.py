@@ -26,14 +26,19 @@ holds, wakes = my.integer_accessory("holds"), my.accessory("wakes")
 tau, threshold, reset, refractory = 20.0, 20.0, 10.0, 2.0
 
 spike = {V: reset, holds: 1, wakes: my.time + refractory}
-membrane = dict(equations={V: my.where(holds == 1, 0, (mu - V) / tau)},
-                noise={V: my.where(holds == 1, 0, sigma / math.sqrt(tau))},
-                accessories={holds: None, wakes: None},  # phases begin with what the last one left, the first with 0
-                stops=my.stop(wakes, do={holds: 0}))
-neuron = my.model(**membrane, name="neuron", events=my.event(V - threshold, direction="rising", stop_after=1, do=spike))
+
+
+def membrane(**rules):
+    return my.model({V: my.where(holds == 1, 0, (mu - V) / tau)},
+                    noise={V: my.where(holds == 1, 0, sigma / math.sqrt(tau))},
+                    accessories={holds: None, wakes: None},  # as the last phase left them, 0 in the first
+                    stops=my.stop(wakes, do={holds: 0}), **rules)
+
+
+neuron = membrane(name="neuron", events=my.event(V - threshold, direction="rising", stop_after=1, do=spike))
 
 fires = V >= threshold
-seen_at_ends = my.model(**membrane, name="seen_at_ends", after_step={
+seen_at_ends = membrane(name="seen_at_ends", after_step={
     **{target: my.where(fires, value, target) for target, value in spike.items()}, my.end_phase: fires})
 # end of snippet
 

@@ -126,8 +126,8 @@ TEST_CASE("an adjoint has the gradient of forward sensitivities", "[adjoint]") {
         compare_with_sensitivities<explicit_method, network, network_by_all>(networks(21), {0.0, 0.3, 1.1, 1.2, 3.0},
                                                                              1e-11);
     }
-    SECTION("stiff") {
-        compare_with_sensitivities<stiff_method, kinetics, kinetics_by_all>(reactions(11), {0.1, 5.0, 100.0}, 1e-9);
+    SECTION("stiff") {  // the condition numbers of its matrices are about 1e8
+        compare_with_sensitivities<stiff_method, kinetics, kinetics_by_all>(reactions(11), {0.1, 5.0, 100.0}, 3e-8);
     }
 }
 
