@@ -77,9 +77,10 @@ struct fixed_stepping {
         }
     }
 
+    /// The end of a whole step: bit for bit the time at which the next one begins, so that it can reuse the slope.
+    MYRIAD_FUNCTION S next_time() const { return fma(S(s.steps.done + count(1)), s.steps.step, s.steps.base); }
     MYRIAD_FUNCTION S end_time() const {
-        // bit for bit the time at which the next step begins, so that it can reuse the slope
-        S t1 = fma(S(s.steps.done + count(1)), s.steps.step, s.steps.base);
+        S t1 = next_time();
         if constexpr (has_events<Model>) {
             const S redone = s.now() + (s.h + s.steps.time_low);  // a step redone to an event
             t1 = select(s.h == s.steps.step, t1, redone);

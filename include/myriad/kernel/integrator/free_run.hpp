@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Runs of fixed steps without events, hooks, observers or error estimates.
+// Runs of fixed steps without events, hooks, error estimates or observers but that of the past.
 #pragma once
 
 #include "myriad/kernel/integrator/phase_watchdog.hpp"
@@ -9,8 +9,10 @@
 namespace myriad::detail::inline MYRIAD_TARGET {
 
 template <class Model, class Method, class S>
-inline constexpr bool runs_freely = !is_adaptive<Method> && !has_events<Model> && !has_after_step<Model> &&
-                                    !observers<Model, Method, S>::any_watches && !Method::first_same_as_last;
+inline constexpr bool runs_freely =
+    !is_adaptive<Method> && !has_events<Model> && !has_after_step<Model> &&
+    !observers<Model, Method, S>::template any_other_watches<history_writer<Model, Method, S>> &&
+    !Method::first_same_as_last && (!has_delays<Model> || has_constant_lags<Model, S>);
 
 template <class Model, class Method, class S>
 struct free_run {
@@ -33,15 +35,10 @@ struct free_run {
     /// lane at fault. Returns `interrupted` if the source gives up.
     template <class Source>
     [[nodiscard]] MYRIAD_FUNCTION status take_steps(Source& source) {
-        constexpr iteration_number worthwhile = 4, longest_block = 128, asks_every = 1 << 14;
-        // Not the last one, after which the check is due.
-        iteration_number run = phase_watchdog<Model, Method, S>{args, s}.iterations_left() - 1;
+        constexpr iteration_number longest_block = 128;
         R lane_step = R(0);
-        for_each_lane(s.running(), [&](int i) MYRIAD_LAMBDA {
-            const auto left = static_cast<iteration_number>(get_lane(s.steps.left, i)) - 1;
-            run = left < run ? left : run;
-            lane_step = get_lane(s.steps.step, i);
-        });
+        for_each_lane(s.running(), [&](int i) MYRIAD_LAMBDA { lane_step = get_lane(s.steps.step, i); });
+        const iteration_number run = steps_ahead();
         if (run < worthwhile) return status::success;
         // One step size for all lanes takes one register; lanes that differ in direction take ordinary steps.
         const S step = S(lane_step), base = s.steps.base;
@@ -92,6 +89,57 @@ struct free_run {
         fixed_stepping<Model, Method, S>{args, s}.count_steps(done - s.steps.done);
         s.iteration += taken;
         return ending;
+    }
+
+    /// The same for a model with delays, whose past is written at every step: a step with a value that is not finite,
+    /// or that looks up what is not there, is left to the ordinary one that follows.
+    template <class Source>
+    [[nodiscard]] MYRIAD_FUNCTION status take_steps_with_past(Source& source) {
+        const iteration_number run = steps_ahead();
+        if (run < worthwhile) return status::success;
+        const mask_of<S> running = s.running(), none = mask_of<S>(false);
+        s.slopes.prepare(s.now(), s.data, s.extra_evaluations);
+        s.h = s.steps.step;
+        iteration_number taken = 0;
+        status ending = status::success;
+        for (; taken < run; ++taken) {
+            if constexpr (!is_pack<S>) {
+                if (MYRIAD_UNLIKELY(taken % asks_every == 0) &&
+                    phase_watchdog<Model, Method, S>{args, s}.gives_up(source, taken)) {
+                    ending = status::interrupted;
+                    break;
+                }
+            }
+            const S t = s.now(), t1 = fixed_stepping<Model, Method, S>{args, s}.next_time();
+            trial_step<Method, S, n> trial;
+            detail::forget_trial(s.data);
+            s.slopes.invalidate_end();
+            trial.slope_start() = s.slopes.first_stage(t, s.data);
+            detail::take_trial_step<Method, Model>(t, s.h, t1, s.data.y, s.data, trial);
+            const mask_of<S> good = detail::past_is_known(s.data) & team_for<Model>::all(all_finite(trial.y));
+            if (MYRIAD_UNLIKELY(any(running & !good))) break;
+            typename history_writer<Model, Method, S>::memory nothing;
+            history_writer<Model, Method, S>{args, s, nothing}.see({s, trial, t1, running, none});
+            s.data.y = trial.y;
+            s.slopes.accept(running, trial);
+            fixed_stepping<Model, Method, S>{args, s}.count_steps(count(1));
+        }
+        s.data.t = s.now();
+        s.iteration += taken;
+        return ending;
+    }
+
+private:
+    static constexpr iteration_number worthwhile = 4, asks_every = 1 << 14;
+
+    /// How many steps all lanes may take: not the last one of any, and not the last one before the check is due.
+    MYRIAD_FUNCTION iteration_number steps_ahead() const {
+        iteration_number run = phase_watchdog<Model, Method, S>{args, s}.iterations_left() - 1;
+        for_each_lane(s.running(), [&](int i) MYRIAD_LAMBDA {
+            const auto left = static_cast<iteration_number>(get_lane(s.steps.left, i)) - 1;
+            run = left < run ? left : run;
+        });
+        return run;
     }
 };
 

@@ -50,8 +50,11 @@ struct integrator {
             if constexpr (has_triggers<Model>) {
                 if (any(s.ended)) continue;  // by an action before the first step
             }
-            if constexpr (runs_freely<Model, Method, S>)
+            if constexpr (runs_freely<Model, Method, S> && has_delays<Model>) {
+                s.end_lane(0, free_run<Model, Method, S>{args, s}.take_steps_with_past(source));
+            } else if constexpr (runs_freely<Model, Method, S>) {
                 s.end_lane(0, free_run<Model, Method, S>{args, s}.take_steps(source));
+            }
             trial_storage<Method, Model, S> storage;
             trial_type& trial = storage.trial();
             propose_step(events);

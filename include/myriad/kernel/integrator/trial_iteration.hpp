@@ -49,6 +49,7 @@ struct trial_iteration {
         detail::write_step<Model, Method, S>(s.data.past, accepted_step<Model, Method, S>{s, trial, t1, lanes, none});
         for_each_lane(lanes, [&](int i) MYRIAD_LAMBDA {
             s.data.past.lane[i].has_trial = true;
+            s.data.past.lane[i].recalled = nan_of<R>;
             s.data.past.lane[i].trouble = past_trouble::none;
         });
     }

@@ -113,10 +113,12 @@ MYRIAD_FUNCTION S past_value(J j, const S& time, const S& t, const inputs<Model,
 template <class Model, class S>
 MYRIAD_FUNCTION void recall(const S& t, const vec<S, n_state<Model>>& y, const inputs<Model, S>& p) {
     if constexpr (has_delays<Model>) {
+        if (p.past.has_recalled(t)) return;
         detail::for_each_delayed<Model>([&](auto j) MYRIAD_LAMBDA {
             const S time = t - detail::lag_of<Model>(j, t, y, p);
             p.delayed[j] = detail::past_value<Model, 0>(j, time, t, p);
         });
+        p.past.set_recalled(t);
     }
 }
 
@@ -160,6 +162,7 @@ MYRIAD_FUNCTION void forget_trial(lane_data<Model, S>& data) {
     for (int i = 0; i < lanes_of<S>; ++i) {
         data.past.lane[i].trouble = past_trouble::none;
         data.past.lane[i].has_trial = false;
+        data.past.lane[i].recalled = nan_of<real_of<S>>;
     }
 }
 

@@ -46,6 +46,8 @@ struct observer_list {
     struct memories : observer_memory<Observer>... {};
 
     static constexpr bool any_watches = (Observer::watches || ...);
+    template <class One>
+    static constexpr bool any_other_watches = ((Observer::watches && !std::is_same_v<Observer, One>) || ...);
     static constexpr bool change_inputs = ((Observer::watches && Observer::changes_inputs) || ...);
     static_assert(
         !change_inputs || slope_cache<Model, Method, S>::loses_start,

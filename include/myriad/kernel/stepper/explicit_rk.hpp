@@ -23,11 +23,12 @@ MYRIAD_CALLED_FUNCTION vec<S, n_state<Model>> call_rhs(MYRIAD_CALL_ARGUMENT(S) t
     return Model::template rhs<S>(t, y, p);
 }
 
-/// Evaluates the model's right-hand side: of a heavy one a kernel has one copy, which all stages call.
-template <class Model, class S>
+/// Evaluates the model's right-hand side: of a heavy one a kernel has one copy, which all stages call. Where the model
+/// has delays, `past_is_set` says that `p` has their values at that time and state.
+template <class Model, bool past_is_set = false, class S>
 MYRIAD_FUNCTION vec<S, n_state<Model>> evaluate_rhs(const S& t, const vec<S, n_state<Model>>& y,
                                                     const inputs<Model, S>& p) {
-    if constexpr (has_delays<Model>) detail::recall<Model>(t, y, p);
+    if constexpr (has_delays<Model> && !past_is_set) detail::recall<Model>(t, y, p);
     if constexpr (calls_rhs<Model, S>) {
         return detail::call_rhs<Model, S>(t, y, p);
     } else {
@@ -244,14 +245,23 @@ MYRIAD_FUNCTION void explicit_rk_step(const S& t, const S& h, const S& t1, const
     static_for<1, Method::stages>([&](auto i) MYRIAD_LAMBDA {
         constexpr int stage = decltype(i)::value;
         constexpr bool at_end = Method::first_same_as_last && stage == last - 1;
+        // Of constant lags, as stages at one time see the same.
+        constexpr bool past_is_set = [] {
+            if constexpr (has_delays<Model> && stage > 1)
+                return has_constant_lags<Model, S> && node<Method, stage, R> == node<Method, stage - 1, R>;
+            return false;
+        }();
         const auto argument = [&]() MYRIAD_LAMBDA { return detail::combine<Method, stage>(y, h, trial.k); };
         // auto, as g++ 12 crashes by the type of a vector of run-time length here
         const auto put_slopes = [&](const S& at, const auto& of) MYRIAD_LAMBDA {
-            detail::put_result(trial.k[stage], [&]() MYRIAD_LAMBDA { return detail::evaluate_rhs<Model>(at, of, p); });
+            detail::put_result(trial.k[stage],
+                               [&]() MYRIAD_LAMBDA { return detail::evaluate_rhs<Model, past_is_set>(at, of, p); });
         };
         if constexpr (at_end) {
             detail::put_result(trial.y, argument);
             put_slopes(t1, trial.y);
+        } else if constexpr (has_delays<Model> && node<Method, stage, R> == R(1)) {
+            put_slopes(t1, argument());  // the slope at the end sees the same values of the past
         } else {
             put_slopes(fma(S(detail::node_operand<Method, stage, R>()), h, t), argument());
         }
