@@ -30,7 +30,8 @@ benchmark_case pleiades_case();
 benchmark_case van_der_pol_case();
 /// Hodgkin and Huxley's axon, and 8, 16 and 32 of Kuramoto's oscillators.
 std::vector<benchmark_case> heavy_cases();
-benchmark_case noise_case();
+/// Geometric Brownian motion, and a chemical Langevin equation.
+std::vector<benchmark_case> noise_cases();
 benchmark_case delays_case();
 benchmark_case keller_miksis_case();
 benchmark_case relief_valve_case();

@@ -128,7 +128,7 @@ std::vector<benchmark_case> all_cases() {
     all.push_back(pleiades_case());
     all.push_back(van_der_pol_case());
     for (benchmark_case& what : heavy_cases()) all.push_back(std::move(what));
-    all.push_back(noise_case());
+    for (benchmark_case& what : noise_cases()) all.push_back(std::move(what));
     all.push_back(delays_case());
     return all;
 }
