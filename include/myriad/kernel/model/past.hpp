@@ -53,9 +53,26 @@ struct seen_step {
     MYRIAD_FUNCTION bool has(R time) const { return (time >= start) & (time < end); }
 };
 
+/// Of a thread of a team: where the states of its units are among those kept, -1 for others, and those that its delayed
+/// values are of.
+template <class Model, bool of_team = team_size<Model> != 1>
+struct places_of_thread {};
+template <class Model>
+struct places_of_thread<Model, true> {
+    std::int32_t own[n_state<Model>], delayed[n_delayed<Model>];
+
+    MYRIAD_FUNCTION void find() {
+        using part = as_part<Model>;
+        const auto& places = kept_places_of_states<whole_of<Model>>.place;
+        component_loop_of_part<Model>::template range<0, n_state<Model>>(
+            [&](auto c) MYRIAD_LAMBDA { own[c] = part::is_own_state(c) ? places[part::whole_state(c)] : -1; });
+        detail::for_each_delayed<Model>([&](auto j) MYRIAD_LAMBDA { delayed[j] = places[part::state_of_delayed(j)]; });
+    }
+};
+
 /// The past of one lane. Steps are numbered from the beginning; step k is in slot k modulo their number.
 template <class Model, class R>
-struct lane_past {
+struct lane_past : places_of_thread<Model> {
     static constexpr int values = n_delayed<Model>, lags = n_lag<Model>;
     static constexpr std::int32_t none = std::numeric_limits<std::int32_t>::max();
 
@@ -124,6 +141,27 @@ struct past_view {
     /// The first step that is still there while the next one is written.
     MYRIAD_FUNCTION std::int32_t oldest(int i) const { return lane[i].steps + 2 - slots; }
 
+    /// Where the state of delayed value j is among those kept.
+    template <class J>
+    MYRIAD_FUNCTION auto place_of(int i, J j) const {
+        if constexpr (team_size<Model> == 1) {
+            return place_of_kept<Model>(j);
+        } else {
+            return lane[i].delayed[j];
+        }
+    }
+    /// Calls `visit(place, number of the state)` for each state that is kept; in a team for those of the thread.
+    template <class Visit>
+    MYRIAD_FUNCTION void for_each_kept(Visit&& visit) const {
+        if constexpr (team_size<Model> == 1) {
+            detail::for_each_kept_state<Model>(visit);
+        } else {
+            component_loop_of_part<Model>::template range<0, n_state<Model>>([&](auto c) MYRIAD_LAMBDA {
+                if (lane[0].own[c] >= 0) visit(lane[0].own[c], static_cast<int>(c));
+            });
+        }
+    }
+
     /// The length of the last step.
     MYRIAD_FUNCTION R last_length(int i) const {
         return lane[i].steps > 0 ? start_of(i, lane[i].steps) - start_of(i, lane[i].steps - 1) : R(0);
@@ -152,7 +190,7 @@ struct past_view {
                 value = fma(theta, fma(R(3) * theta, seen.cubic, seen.quadratic + seen.quadratic), seen.linear);
             if constexpr (order == 2) value = R(2) * fma(R(3) * theta, seen.cubic, seen.quadratic);
         } else {
-            const R* const here = terms_of(step_of(i, seen.number), place_of_kept<Model>(j));
+            const R* const here = terms_of(step_of(i, seen.number), place_of(i, j));
             const auto term = [&](int power) MYRIAD_LAMBDA {
                 R factor = here[power * stride];
                 for (int k = 0; k < order; ++k) factor = static_cast<R>(power - k) * factor;
@@ -178,8 +216,8 @@ private:
         R *const step = step_of(i, k), *const next = step_of(i, k + 1);
         kept_step at{step[0], next[0], R(0), R(0), R(0), R(0)};
         if (terms == 2) {
-            const R* const here = terms_of(step, place_of_kept<Model>(j));
-            const R* const there = terms_of(next, place_of_kept<Model>(j));
+            const R* const here = terms_of(step, place_of(i, j));
+            const R* const there = terms_of(next, place_of(i, j));
             at.here = here[0], at.slope_here = here[stride];
             at.there = there[0], at.slope_there = there[stride];
         }
@@ -253,7 +291,7 @@ private:
             seen.quadratic = R(3) * difference - rise_here - rise_here - rise_there;
             seen.cubic = rise_here + rise_there - difference - difference;
             // Time goes on: the next step is likely to be looked at next, and only its end has not been read.
-            const R* const there = terms_of(step_of(i, k + 2), place_of_kept<Model>(j));
+            const R* const there = terms_of(step_of(i, k + 2), place_of(i, j));
             MYRIAD_PREFETCH(step_of(i, k + 2)), MYRIAD_PREFETCH(there), MYRIAD_PREFETCH(there + stride);
         }
     }
@@ -268,7 +306,7 @@ private:
             return;
         }
         seen.end = begin_of(i);
-        seen.value = initial_of(i)[place_of_kept<Model>(j) * stride];
+        seen.value = initial_of(i)[place_of(i, j) * stride];
     }
 };
 
@@ -293,6 +331,7 @@ MYRIAD_FUNCTION void look_back(past_view<Model, S>& past, const Arguments& args,
     detail::for_each_delayed<Model>([&](auto j)
                                         MYRIAD_LAMBDA { past.lane[i].seen[j].number = past.lane[i].steps - 1; });
     past.lane[i].forget();
+    if constexpr (team_size<Model> != 1) past.lane[i].find();
 }
 
 /// Lane i of them.
