@@ -90,7 +90,7 @@ constexpr auto fill_echoes = [](auto& e) {
     fill_states(e);
     e.parameter(echo::strength) = Eigen::ArrayXd::LinSpaced(instances, 1, 2);
     for (int u = 0; u < echo::units; ++u) e.parameter(1 + u) = 0.4 + 0.1 * u;
-    e.time_domain(0, 2);
+    e.time_domain(0, 1.2);
 };
 myriad::options tolerance(double value, std::int64_t history_steps) {
     myriad::options options;
@@ -114,8 +114,9 @@ TEST_CASE("a team of threads takes fixed steps with delays as one thread does") 
     myriad::options options{.step = 0.02};
     compare<myriad::runge_kutta_4, phases<1>, phases<4>>(options, fill_phases, all_succeed);
     options.phases = 2;
-    options.phase_length = 1;
+    options.phase_length = 0.7;
     options.step = 0.05;
+    options.history_steps = 16384;  // each action arrives by 14 lags
     compare<myriad::runge_kutta_4, echoes<1>, echoes<8>>(options, fill_echoes, all_succeed);
 }
 
@@ -132,9 +133,9 @@ TEST_CASE("a team of threads has actions, stops, slopes of the past and phases w
         all_succeed(found);
         CHECK(found.parameter(echo::strength).minCoeff() > 1);
     };
-    myriad::options options = tolerance(1e-6, 1024);
+    myriad::options options = tolerance(1e-6, 16384);  // each action arrives by 14 lags
     options.phases = 2;
-    for (const double length : {0.0, 1.1}) {  // from t_begin again, whereto the past moves, or on
+    for (const double length : {0.0, 0.7}) {  // from t_begin again, whereto the past moves, or on
         options.phase_length = length;
         compare<myriad::cash_karp, echoes<1>, echoes<4>>(options, fill_echoes, has_stops);
     }
