@@ -64,6 +64,29 @@ struct echo {
     }
 };
 
+/// Kuramoto's oscillators, each of which sees each of the others after a time of its own: so many delayed values that
+/// loops over them are not written out.
+template <int n>
+struct distant {
+    enum unit_state { theta, n_unit_state };
+    enum parameter { K, speed, n_parameter };
+    enum unit_shared { n_unit_shared = n };  // how far the others are
+    enum unit_delayed { n_unit_delayed = n };
+
+    MYRIAD_FUNCTION static int delayed_state(int) { return theta; }
+    MYRIAD_FUNCTION static int delayed_unit(int, int delayed) { return delayed; }
+    template <class R>
+    MYRIAD_FUNCTION static R lag(int, int delayed, const auto& p) {
+        return R(p.unit_shared[delayed]) / p[speed];
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_unit_state> rhs(int unit, auto, const auto& y, const auto& p) {
+        R sum = R(1) + R(0.1) * R(unit);
+        for (int j = 0; j < n; ++j) sum += p[K] * myriad::sin(p.unit_delayed[j] - y[theta]);
+        return myriad::vec<R, n_unit_state>{sum};
+    }
+};
+
 template <class Unit, int threads>
 struct of_team : Unit {
     static constexpr bool scalar_only = true;
@@ -73,6 +96,8 @@ template <int threads>
 using phases = myriad::coupled_units<of_team<delayed_units::phase, threads>, 19>;
 template <int threads>
 using cells = myriad::coupled_units<of_team<delayed_units::cell, threads>, delayed_units::cell::units>;
+template <int threads>
+using pairs = myriad::coupled_units<of_team<distant<9>, threads>, 9>;
 template <int threads>
 using echoes = myriad::coupled_units<of_team<echo, threads>, echo::units>;
 

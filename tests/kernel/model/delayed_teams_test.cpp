@@ -14,6 +14,7 @@ namespace {
 using delayed_teams::cells;
 using delayed_teams::echo;
 using delayed_teams::echoes;
+using delayed_teams::pairs;
 using delayed_teams::phases;
 using delayed_units::cell;
 
@@ -126,6 +127,17 @@ TEST_CASE("a team of threads has conduction times of each pair, histories, and e
         for (int u = 0; u < cell::units; ++u) CHECK(found.state(2 * u + 1).maxCoeff() > 1);
     };
     compare<myriad::dormand_prince_5, cells<1>, cells<4>>(tolerance(1e-7, 1024), fill_cells, has_events);
+}
+
+TEST_CASE("a team of threads has a conduction time for each of many pairs as one thread has") {
+    const auto fill = [](auto& e) {
+        fill_states(e);
+        e.parameter(0) = 0.1;
+        e.parameter(1) = Eigen::ArrayXd::LinSpaced(instances, 0.5, 2);
+        for (int k = 0; k < 81; ++k) e.shared(k) = 0.3 + 0.01 * ((37 * k) % 81);
+        e.time_domain(0, 1.5);
+    };
+    compare<myriad::dormand_prince_5, pairs<1>, pairs<4>>(tolerance(1e-6, 8192), fill, all_succeed);
 }
 
 TEST_CASE("a team of threads has actions, stops, slopes of the past and phases with delays as one thread has") {

@@ -6,6 +6,7 @@
 
 INTEGRATE_IN_TEAMS(delayed_teams::phases, myriad::tsitouras_5, 8)
 INTEGRATE_IN_TEAMS(delayed_teams::phases, myriad::runge_kutta_4, 4)
+INTEGRATE_IN_TEAMS(delayed_teams::pairs, myriad::dormand_prince_5, 4)
 INTEGRATE_IN_TEAMS(delayed_teams::cells, myriad::dormand_prince_5, 4)
 INTEGRATE_IN_TEAMS(delayed_teams::echoes, myriad::cash_karp, 4)
 INTEGRATE_IN_TEAMS(delayed_teams::echoes, myriad::runge_kutta_4, 8)
