@@ -87,6 +87,9 @@ struct distant {
     }
 };
 
+template <int n>
+using pairs_of = myriad::coupled_units<distant<n>, n>;
+
 template <class Unit, int threads>
 struct of_team : Unit {
     static constexpr bool scalar_only = true;

@@ -165,8 +165,8 @@ TEST_CASE("What units keep of their past is told and is part of the memory that 
     CHECK(myriad::detail::highest_jump<cells>(5) == 3);
     CHECK(myriad::detail::highest_jump<phases<20>>(9) == 9);
     // binomial(81 + 2, 2) = 3403 and binomial(81 + 3, 3) = 95 284; binomial(400 + 2, 2) = 80 601
-    CHECK(myriad::detail::highest_jump<myriad::coupled_units<delayed_teams::distant<9>, 9>>(5) == 2);
-    CHECK(myriad::detail::highest_jump<myriad::coupled_units<delayed_teams::distant<20>, 20>>(5) == 1);
+    CHECK(myriad::detail::highest_jump<delayed_teams::pairs_of<9>>(5) == 2);
+    CHECK(myriad::detail::highest_jump<delayed_teams::pairs_of<20>>(5) == 1);
 }
 
 TEST_CASE("Lags of units that cannot be, and a ring that is too short, are statuses", "[coupled_units]") {

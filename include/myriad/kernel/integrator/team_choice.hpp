@@ -17,8 +17,8 @@ inline constexpr bool is_of_units = false;
 template <class Unit, int units>
 inline constexpr bool is_of_units<coupled_units<Unit, units>> = true;
 
-/// Most bytes of a block's shared memory that one team takes: of 227 KiB less than what one of values of the past alone
-/// is left.
+/// Most bytes of shared memory, of the 227 KiB that a block has, that a team takes for its instance where each unit may
+/// have a value of the past for each of the others, in double precision.
 inline constexpr int most_bytes_of_team = 200 << 10;
 /// Whether a team can integrate a model by a method. Others are integrated by one thread per instance.
 template <class Model, class Method>
