@@ -27,6 +27,5 @@ myriad::detail::integrate_ensemble<delayed_units::phases<20>, myriad::runge_kutt
     const __grid_constant__ myriad::detail::launch_arguments<delayed_units::phases<20>, double, constant>);
 using part_of_64 = myriad::detail::model_of_thread<delayed_units::phases<64>, myriad::dormand_prince_5, double>;
 constexpr auto cache = myriad::shared_placement::cache;
-template __global__ void
-myriad::detail::integrate_ensemble<part_of_64, myriad::dormand_prince_5, double, cache>(
+template __global__ void myriad::detail::integrate_ensemble<part_of_64, myriad::dormand_prince_5, double, cache>(
     const __grid_constant__ myriad::detail::launch_arguments<part_of_64, double, cache>);

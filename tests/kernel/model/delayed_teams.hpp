@@ -30,7 +30,8 @@ struct echo {
     MYRIAD_FUNCTION static bool has_history(int delayed) { return delayed == next_before; }
     template <class R>
     MYRIAD_FUNCTION static R lag(int unit, int delayed, const auto& p) {
-        return delayed == next_before ? p.unit_parameter[tau] : R(1) + R(0.1) * p.of((unit + 1) % units).unit_parameter[tau];
+        return delayed == next_before ? p.unit_parameter[tau]
+                                      : R(1) + R(0.1) * p.of((unit + 1) % units).unit_parameter[tau];
     }
     template <class R>
     MYRIAD_FUNCTION static R history(int unit, int, const R& t, const auto& p) {

@@ -170,8 +170,8 @@ constexpr bool prefers_latency = sizeof(R) == sizeof(double) && is_adaptive<Meth
 
 /// Blocks of that size that nvcc keeps registers for; with 0 as it finds best (docs/gpu.md). Adaptive steps of models
 /// with delays wait for memory: Lorenz with a delay, dormand_prince_5 at 1e-8, 262 144 instances on an NVIDIA H200, ms:
-/// 34.6 with three blocks of 192 threads and 38.6 without, when steps of the past were not yet prefetched. In teams that
-/// was not measured; they would spill.
+/// 34.6 with three blocks of 192 threads and 38.6 without, when steps of the past were not yet prefetched. In teams
+/// that was not measured; they would spill.
 template <class Model, class Method, class R>
 constexpr int least_blocks() {
     if (has_delays<Model> && is_adaptive<Method> && !has_events<Model> && team_size<Model> == 1)

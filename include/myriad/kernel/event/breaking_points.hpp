@@ -15,9 +15,9 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 /// The most jumps that are followed for one that comes from elsewhere, and the most up to the second derivative.
 inline constexpr std::int64_t most_jumps_of_one = 1024, most_jumps_to_second = 16 * most_jumps_of_one;
 /// The highest order of a derivative whose jumps are followed, of a method of that order: this order or, where there
-/// are so many lags that these would be too many, a lower one. One jump arrives by each of n lags, each time a derivative
-/// higher: that makes binomial(n + k, k) of them up to k derivatives higher, all within k longest lags. At the first, one
-/// by each lag, they are left.
+/// are so many lags that these would be too many, a lower one. One jump arrives by each of n lags, each time a
+/// derivative higher: that makes binomial(n + k, k) of them up to k derivatives higher, all within k longest lags.
+/// With an order of one, only the jump itself arrives, once by each lag.
 template <class Model>
 MYRIAD_FUNCTION int highest_jump(int order) {
     std::int64_t jumps = 1;

@@ -79,7 +79,9 @@ struct delays_of_part<Part, Whole, parts> : with_slopes_of_part<Part, Whole, par
         return unit_type::template history<R>(unit, j % n_unit_delayed<unit_type>, t,
                                               typename Part::template unit_inputs_type<real>(inputs, unit));
     }
-    MYRIAD_FUNCTION static bool has_history(int j) { return Whole::has_history(j % n_unit_delayed<typename Whole::unit_type>); }
+    MYRIAD_FUNCTION static bool has_history(int j) {
+        return Whole::has_history(j % n_unit_delayed<typename Whole::unit_type>);
+    }
 };
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET

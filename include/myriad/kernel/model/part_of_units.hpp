@@ -203,7 +203,8 @@ struct part_of_units : part_summaries<Whole, (Whole::n_unit + threads - 1) / thr
     /// Calls `use` for a number of each state in the order of the states.
     template <class R, class Own, class Use>
     static MYRIAD_FUNCTION void in_order(Own&& own, Use&& use) {
-        const R* const of_team = put_states<R>([&](int c) MYRIAD_LAMBDA { return static_cast<R>(own(c)); }, [](R*) MYRIAD_LAMBDA {});
+        const R* const of_team =
+            put_states<R>([&](int c) MYRIAD_LAMBDA { return static_cast<R>(own(c)); }, [](R*) MYRIAD_LAMBDA {});
         using number = std::remove_cvref_t<decltype(own(0))>;
         for (int c = 0; c < detail::n_state<Whole>; ++c) use(static_cast<number>(of_team[c]));
     }
@@ -215,7 +216,11 @@ struct part_of_units : part_summaries<Whole, (Whole::n_unit + threads - 1) / thr
         int first = layout::parameter;
         if constexpr (layout::keeps_inputs) first = p.in_memory;
         const R* const accessory = memory<R>() + first + n_parameter<Whole>;
-        return {past_in_memory<Whole>(reinterpret_cast<const S*>(memory<R>())), memory<R>() + first, p.shared, p.shared_integer, accessory,
+        return {past_in_memory<Whole>(reinterpret_cast<const S*>(memory<R>())),
+                memory<R>() + first,
+                p.shared,
+                p.shared_integer,
+                accessory,
                 reinterpret_cast<const integer_of<R>*>(accessory + n_accessory<Whole>)};
     }
 
@@ -231,9 +236,8 @@ struct part_of_units : part_summaries<Whole, (Whole::n_unit + threads - 1) / thr
         for (int part = 0; part < parts; ++part) {
             if (!is_own(part)) continue;
             const int unit = unit_of(part);
-            const vec<S, count> of_unit =
-                unit_type::template events<S>(unit, t, unit_states<unit_type, units, const S>{states, unit},
-                                              unit_inputs_type<R, S>(inputs, unit));
+            const vec<S, count> of_unit = unit_type::template events<S>(
+                unit, t, unit_states<unit_type, units, const S>{states, unit}, unit_inputs_type<R, S>(inputs, unit));
             for (int e = 0; e < count; ++e) of_all[unit * count + e] = of_unit[e];
         }
         together::synchronise();
@@ -253,9 +257,8 @@ struct part_of_units : part_summaries<Whole, (Whole::n_unit + threads - 1) / thr
         MYRIAD_UNROLL
         for (int part = 0; part < parts; ++part) {
             const int unit = unit_of(part);
-            const vec<S, count> of_unit =
-                unit_type::template observe<S>(unit, t, unit_states<unit_type, units, const S>{states, unit},
-                                               unit_inputs_type<R, S>(inputs, unit));
+            const vec<S, count> of_unit = unit_type::template observe<S>(
+                unit, t, unit_states<unit_type, units, const S>{states, unit}, unit_inputs_type<R, S>(inputs, unit));
             for (int q = 0; q < count; ++q) values[part * count + q] = of_unit[q];
         }
         return values;
@@ -349,9 +352,7 @@ struct part_of_units : part_summaries<Whole, (Whole::n_unit + threads - 1) / thr
         put_past(of_team, p);
         together::synchronise();
         const auto inputs = inputs_of_team<R>(p);
-        const auto inputs_of = [&](int unit) MYRIAD_LAMBDA {
-            return unit_inputs_type<R>(inputs, unit);
-        };
+        const auto inputs_of = [&](int unit) MYRIAD_LAMBDA { return unit_inputs_type<R>(inputs, unit); };
         const auto states_of = [&](int part) MYRIAD_LAMBDA {
             return own_states<Whole, R>(of_team, unit_of(part), y.values + part * states_of_unit);
         };

@@ -52,8 +52,8 @@ MYRIAD_FUNCTION bool same_lags_are_first() {
     return true;
 }
 
-/// Calls `put(j, place, is_new)` for all delayed values with the place of their state among those kept. Returns how many
-/// are kept.
+/// Calls `put(j, place, is_new)` for all delayed values with the place of their state among those kept. Returns how
+/// many are kept.
 template <class Model>
 constexpr int place_states_of_delays(auto&& put) {
     if (!states_of_delays_exist<Model>()) return 1;  // refused elsewhere
@@ -106,7 +106,7 @@ constexpr int threads_with_own_lags() {
     if constexpr (team_size<Model> == 1) {
         return 1;
     } else {
-        return Model::has_own_lags ? team_size<Model> : 1;
+        return as_part<Model>::has_own_lags ? team_size<Model> : 1;
     }
 }
 template <class Model>
@@ -131,8 +131,7 @@ constexpr auto make_tables_of_past() {
             put(tables.place, tables.state, j, at, Model::delayed_state(j), is_new);
         });
     }
-    place_lags<Model>(
-        [&](int j, int at, bool is_new) { put(tables.lag, tables.first, j, at, j, is_new); });
+    place_lags<Model>([&](int j, int at, bool is_new) { put(tables.lag, tables.first, j, at, j, is_new); });
     return tables;
 }
 /// The place of each state among those kept; -1 for others.
