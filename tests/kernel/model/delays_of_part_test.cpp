@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 // A team of threads integrates coupled units with delays as one thread does, bit for bit.
-#include "tests/kernel/model/delayed_teams.hpp"
-
 #include <cmath>
 #include <cstdint>
 
 #include <myriad/myriad.hpp>
 
 #include "tests/catch.hpp"
+#include "tests/kernel/model/delayed_teams.hpp"
 
 namespace {
 
