@@ -132,11 +132,11 @@ TEST_CASE("a team of threads has a conduction time for each of many pairs as one
     const auto fill = [](auto& e) {
         fill_states(e);
         e.parameter(0) = 0.1;
-        e.parameter(1) = Eigen::ArrayXd::LinSpaced(instances, 0.5, 2);
+        e.parameter(1) = Eigen::ArrayXd::LinSpaced(instances, 0.5, 50.5);  // the last has lags shorter than its steps
         for (int k = 0; k < 81; ++k) e.shared(k) = 0.3 + 0.01 * ((37 * k) % 81);
         e.time_domain(0, 1.5);
     };
-    compare<myriad::dormand_prince_5, pairs<1>, pairs<4>>(tolerance(1e-6, 8192), fill, all_succeed);
+    compare<myriad::dormand_prince_5, pairs<1>, pairs<4>>(tolerance(1e-5, 8192), fill, all_succeed);
 }
 
 TEST_CASE("a team of threads has actions, stops, slopes of the past and phases with delays as one thread has") {
