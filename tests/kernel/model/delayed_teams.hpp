@@ -54,6 +54,9 @@ struct echo {
     MYRIAD_FUNCTION static void initialise(int, auto& lane) {
         lane.unit_accessory[seen] = lane.unit_delayed[next_before];
     }
+    MYRIAD_FUNCTION static void after_step(int unit, auto& lane) {
+        if (unit == 3) lane.y[v] *= 0.999;  // so that the slope of its past has a kink there, which one thread sees
+    }
     MYRIAD_FUNCTION static void after_event(int unit, int, auto& lane) {
         lane.y[v] += 0.1 * lane.of((unit + 1) % units).unit_delayed[next_before];
         lane.unit_accessory[seen] += lane.unit_delayed[slope_before];
