@@ -132,8 +132,8 @@ TEST_CASE("a team of threads has conduction times of each pair, histories, and e
 TEST_CASE("a team of threads has a conduction time for each of many pairs as one thread has") {
     const auto fill = [](auto& e) {
         fill_states(e);
-        e.parameter(0) = 0.1;
-        e.parameter(1) = Eigen::ArrayXd::LinSpaced(instances, 0.5, 50.5);  // the last has lags shorter than its steps
+        e.parameter(0) = 0.5;
+        e.parameter(1) = Eigen::ArrayXd::LinSpaced(instances, 6, 50.5);  // lags a little, and much, shorter than the steps
         for (int k = 0; k < 81; ++k) e.shared(k) = 0.3 + 0.01 * ((37 * k) % 81);
         e.time_domain(0, 1.5);
     };
