@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cases.hpp"
+#include "delayed_kuramoto.hpp"
 #include "problems/delayed.hpp"
 #include "reference.hpp"
 
@@ -88,7 +89,48 @@ std::vector<measurement> measure(std::int64_t size, const measure_options& how) 
             measure_delays<myriad::dormand_prince_5>("bouncing ball", ball, size, how)};
 }
 
+template <class Model>
+void fill_phases(myriad::ensemble<Model>& e) {
+    using phase = typename Model::unit_type;
+    constexpr int n = Model::n_unit;
+    e.parameter(phase::K) = Eigen::ArrayXd::LinSpaced(e.size(), 0.2, 2);
+    e.parameter(phase::tau) = Eigen::ArrayXd::LinSpaced(e.size(), 0.5, 1.5);
+    for (int unit = 0; unit < n; ++unit)
+        e.parameter(Model::parameter_of(unit, phase::omega)) = 1 + 0.5 * std::sin(unit);
+    myriad::set_coupling(e, 0, Eigen::MatrixXd::Constant(n, n, 1.0 / n));
+    e.time_domain(0, 20);
+}
+template <class Model>
+void start_phases(myriad::ensemble<Model>& e) {
+    for (int unit = 0; unit < Model::n_unit; ++unit) e.state(unit) = 0.1 * (unit * 7 % 64);
+}
+template <int units, int threads>
+measurement measure_units(const char* name, std::int64_t size, const measure_options& how) {
+    using model = delayed_phases<units, threads>;
+    const problem<model> phases{{.relative_tolerance = 1e-6, .absolute_tolerance = 1e-6, .history_steps = 128},
+                                &fill_phases<model>,
+                                &start_phases<model>};
+    return measure_delays<myriad::dormand_prince_5>(name, phases, size, how);
+}
+std::vector<measurement> measure_all_units(std::int64_t size, const measure_options& how) {
+    return {measure_units<64, 1>("64 units, one thread", size, how), measure_units<64, 0>("64 units, team", size, how),
+            measure_units<64, 32>("64 units, team of 32", size, how),
+            measure_units<100, 1>("100 units, one thread", size, how),
+            measure_units<100, 0>("100 units, team", size, how)};
+}
+
 }  // namespace
+
+benchmark_case delayed_units_case() {
+    return {.name = "delayed_units",
+            .work =
+                "Kuramoto's oscillators with a delay, 64 and 100 of them, to t = 20 by dormand_prince_5 at 1e-6, by "
+                "one thread of a GPU for each instance and by teams",
+            .error = "difference of the first 64 instances from the same on the CPU",
+            .allowed_error = 1e-3,
+            .sizes = {1024, 8192},
+            .measure = &measure_all_units};
+}
 
 benchmark_case delays_case() {
     return {.name = "delays",

@@ -33,6 +33,8 @@ std::vector<benchmark_case> heavy_cases();
 /// Geometric Brownian motion, and a chemical Langevin equation.
 std::vector<benchmark_case> noise_cases();
 benchmark_case delays_case();
+/// Coupled units with delays, by one thread of a GPU and by teams.
+benchmark_case delayed_units_case();
 benchmark_case keller_miksis_case();
 benchmark_case relief_valve_case();
 benchmark_case duffing_events_case();

@@ -130,6 +130,7 @@ std::vector<benchmark_case> all_cases() {
     for (benchmark_case& what : heavy_cases()) all.push_back(std::move(what));
     for (benchmark_case& what : noise_cases()) all.push_back(std::move(what));
     all.push_back(delays_case());
+    all.push_back(delayed_units_case());
     return all;
 }
 

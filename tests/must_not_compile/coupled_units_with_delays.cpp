@@ -4,8 +4,8 @@
 // expect: units with delays have `enum unit_delayed \{ ..., n_unit_delayed \};` and the functions `delayed_state`
 // case: lag_of_units_with_the_inputs_first
 // expect: lag of coupled units has a wrong signature: it must be
-// case: team_for_units_with_delays
-// expect: teams of threads take no units with delays yet
+// case: team_for_lags_by_state
+// expect: teams of threads take no lags that depend on time or state
 // case: delayed_value_of_no_unit
 // expect: delayed_state names no state of the model
 // case: delayed_value_of_a_later_lag
@@ -24,7 +24,7 @@
 struct cell {
     enum unit_state { x, n_unit_state };
     enum parameter { tau, n_parameter };
-#if defined CASE_team_for_units_with_delays
+#if defined CASE_team_for_lags_by_state
     static constexpr int threads_per_instance = 4;
 #endif
 #if defined CASE_delayed_values_of_the_system
@@ -47,6 +47,11 @@ struct cell {
     template <class R>
     MYRIAD_FUNCTION static R lag(const auto& p, int, int, int) {
         return p[tau];
+    }
+#elif defined CASE_team_for_lags_by_state
+    template <class R>
+    MYRIAD_FUNCTION static R lag(int, int, const R&, const auto& y, const auto&) {
+        return y[x];
     }
 #elif !defined CASE_units_with_delays_without_lag
     template <class R>

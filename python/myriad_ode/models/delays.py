@@ -80,7 +80,7 @@ def check(model: Any) -> None:
     units = model.units_of_states
     if units is not None and (units.threads_per_instance or 1) > 1:
         raise Error(f"threads_per_instance is {units.threads_per_instance}{line}, and teams of threads take no units "
-                    "with delays yet: leave it out, and one thread integrates an instance")
+                    "with delays from Python yet: leave it out, and one thread integrates an instance")
     _check_lags(model)
 
 

@@ -7,6 +7,7 @@
 #include <myriad/model.hpp>
 
 #include "tests/catch.hpp"
+#include "tests/kernel/model/delayed_teams.hpp"
 #include "tests/kernel/model/teams.hpp"
 
 namespace {
@@ -70,5 +71,12 @@ TEST_CASE("units say how many threads integrate them, and what teams do not have
     CHECK(threads_per_instance<teams::hoppers<4>, myriad::tsitouras_5, double>() == 4);
     CHECK(threads_per_instance<teams::watched_ring<4>, myriad::tsitouras_5, double>() == 4);
     CHECK(threads_per_instance<teams::adapting_cells<4>, myriad::tsitouras_5, double>() == 4);
+    CHECK(threads_per_instance<delayed_units::phases<20>, myriad::tsitouras_5, double>() == 8);
+    CHECK(threads_per_instance<delayed_units::phases<5>, myriad::tsitouras_5, double>() == 1);
+    CHECK(threads_per_instance<delayed_units::phases<20>, myriad::rodas_5p, double>() == 1);
+    CHECK(threads_per_instance<delayed_units::changing_units, myriad::tsitouras_5, double>() == 1);
+    // A value of the past for each pair, in shared memory: 100^2 have room there, 170^2 have none.
+    CHECK(threads_per_instance<delayed_teams::pairs_of<100>, myriad::tsitouras_5, double>() == 32);
+    CHECK(threads_per_instance<delayed_teams::pairs_of<170>, myriad::tsitouras_5, double>() == 1);
     CHECK(threads_per_instance<myriad::with_tangents<ring, 1>, myriad::tsitouras_5, double>() == 1);
 }

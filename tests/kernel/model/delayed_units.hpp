@@ -76,6 +76,7 @@ struct cell {
     enum unit_observed { seen, n_unit_observed };
     enum unit_accessory { largest, n_unit_accessory };
     static constexpr bool accessories_are_outputs = true;
+    static constexpr int threads_per_instance = 4;  // on a GPU, of which two have two units
     static constexpr int units = 6;
     static constexpr myriad::summary summaries[] = {{seen, myriad::over_phase::maximum, largest}};
 

@@ -14,6 +14,7 @@
 #include "myriad/kernel/event/breaking_points.hpp"
 #include "myriad/kernel/model/delays_of_units.hpp"
 #include "tests/catch.hpp"
+#include "tests/kernel/model/delayed_teams.hpp"
 #include "tests/support/device.hpp"
 
 namespace {
@@ -163,6 +164,9 @@ TEST_CASE("What units keep of their past is told and is part of the memory that 
     // binomial(12 + 3, 3) = 455 jumps, and binomial(12 + 4, 4) = 1820
     CHECK(myriad::detail::highest_jump<cells>(5) == 3);
     CHECK(myriad::detail::highest_jump<phases<20>>(9) == 9);
+    // binomial(81 + 2, 2) = 3403 and binomial(81 + 3, 3) = 95 284; binomial(400 + 2, 2) = 80 601
+    CHECK(myriad::detail::highest_jump<delayed_teams::pairs_of<9>>(5) == 2);
+    CHECK(myriad::detail::highest_jump<delayed_teams::pairs_of<20>>(5) == 1);
 }
 
 TEST_CASE("Lags of units that cannot be, and a ring that is too short, are statuses", "[coupled_units]") {

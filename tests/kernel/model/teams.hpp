@@ -4,6 +4,7 @@
 
 #include <myriad/methods.hpp>
 
+#include "tests/kernel/model/order_of_threads.hpp"
 #include "tests/kernel/model/unit_models.hpp"
 
 namespace teams {
@@ -260,9 +261,5 @@ using sampled = myriad::dense<myriad::dormand_prince_5>;
 using sampled_8 = myriad::dense<myriad::dormand_prince_8>;
 using averaged = myriad::controlled<myriad::dormand_prince_8, myriad::rms_norm>;
 using careful_start = myriad::controlled<myriad::cash_karp, myriad::automatic_first_step, myriad::mixed_scale>;
-
-/// Who comes first between two points at which the threads of a team wait for each other.
-enum class order { first_thread_first, last_thread_first };
-inline order order_of_threads = order::first_thread_first;
 
 }  // namespace teams

@@ -170,10 +170,11 @@ constexpr bool prefers_latency = sizeof(R) == sizeof(double) && is_adaptive<Meth
 
 /// Blocks of that size that nvcc keeps registers for; with 0 as it finds best (docs/gpu.md). Adaptive steps of models
 /// with delays wait for memory: Lorenz with a delay, dormand_prince_5 at 1e-8, 262 144 instances on an NVIDIA H200, ms:
-/// 34.6 with three blocks of 192 threads and 38.6 without, when steps of the past were not yet prefetched.
+/// 34.6 with three blocks of 192 threads and 38.6 without, when steps of the past were not yet prefetched. In teams
+/// that was not measured; they would spill.
 template <class Model, class Method, class R>
 constexpr int least_blocks() {
-    if (has_delays<Model> && is_adaptive<Method> && !has_events<Model>)
+    if (has_delays<Model> && is_adaptive<Method> && !has_events<Model> && team_size<Model> == 1)
         return max_block_size<Model>() < 3 * 192 ? 3 * 192 / max_block_size<Model>() : 1;
     return fills_registers<Method, Model, R>() || prefers_latency<Model, Method, R> ? 1 : 0;
 }
@@ -252,6 +253,10 @@ __device__ __forceinline__ void integrate_thread(const launch_arguments<Model, R
     static_assert(bytes_of_step<Model, Method, R> <= most_local_memory,
                   "a step of this method with so many states takes more than the 512 KiB of local memory that a thread "
                   "of a GPU has: integrate on the CPU, by an explicit method, or declare a sparse jacobian_pattern");
+    static_assert(bytes_of_past<Model, R> <= most_local_memory && bytes_of_tables<Model> <= most_constant_memory / 2,
+                  "so many delayed values take more memory than a thread of a GPU has: integrate on the CPU, or let "
+                  "units publish what they were, so that a sum looks up one value for each of them and not one for "
+                  "each pair");
     shared_parameters<R> shared = arguments.ensemble.shared;
     if constexpr (placement == shared_placement::constant_bank) shared = {arguments.shared, arguments.shared_integer};
     if constexpr (placement == shared_placement::shared_memory) shared = detail::stage_shared<Model, Method, R>(shared);

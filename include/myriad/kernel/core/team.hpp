@@ -160,6 +160,24 @@ struct thread_team {
         }
     }
 
+    /// The smallest of the threads' numbers, none of which is NaN. Their bits as unsigned integers have the same order,
+    /// once the sign is inverted and, of negative real numbers, all bits.
+    template <class S>
+    static MYRIAD_FUNCTION S smallest(const S& own) {
+        if constexpr (threads == 1) {
+            return own;
+        } else {
+            using U = std::conditional_t<sizeof(S) == sizeof(std::uint32_t), std::uint32_t, std::uint64_t>;
+            constexpr U sign = U{1} << (8 * sizeof(U) - 1);
+            const auto inverted = [](U bits, bool negative) MYRIAD_LAMBDA {
+                return negative && !std::is_integral_v<S> ? ~bits : bits ^ sign;
+            };
+            const U bits = __builtin_bit_cast(U, own), ordered = inverted(bits, (bits & sign) != 0);
+            const U least = ~largest_of(static_cast<U>(~ordered));
+            return __builtin_bit_cast(S, inverted(least, (least & sign) == 0));
+        }
+    }
+
     /// The value that the team's thread of that number has.
     template <class T>
     static MYRIAD_FUNCTION T of_thread(int number, T own) {

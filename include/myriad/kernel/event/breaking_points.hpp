@@ -12,17 +12,18 @@
 
 namespace myriad::detail::inline MYRIAD_TARGET {
 
-/// The most jumps that are followed for one that comes from elsewhere.
-inline constexpr std::int64_t most_jumps_of_one = 1024;
+/// The most jumps that are followed for one that comes from elsewhere, and the most up to the second derivative.
+inline constexpr std::int64_t most_jumps_of_one = 1024, most_jumps_to_second = 16 * most_jumps_of_one;
 /// The highest order of a derivative whose jumps are followed, of a method of that order: this order or, where there
-/// are so many lags that these would be too many, a lower one, from 2 on. One jump arrives by each of n lags, each time
-/// a derivative higher: that makes binomial(n + k, k) of them up to k derivatives higher, all within k longest lags.
+/// are so many lags that these would be too many, a lower one. One jump arrives by each of n lags, each time a
+/// derivative higher: that makes binomial(n + k, k) of them up to k derivatives higher, all within k longest lags.
+/// With an order of one, only the jump itself arrives, once by each lag.
 template <class Model>
 MYRIAD_FUNCTION int highest_jump(int order) {
     std::int64_t jumps = 1;
     for (int k = 1; k <= order; ++k) {
-        jumps = jumps * (n_lag<Model> + k) / k;
-        if (jumps > most_jumps_of_one && k > 2) return k - 1;
+        jumps = jumps * (n_lag<whole_of<Model>> + k) / k;
+        if (jumps > (k > 2 ? most_jumps_of_one : most_jumps_to_second) && k > 1) return k - 1;
     }
     return order;
 }
@@ -80,7 +81,7 @@ struct breaking_points {
             s.breaks.listed[i] = 0;
             s.data.past.start_of(i, 0) = s.data.past.begin_of(i) = t;
             R* const initial = s.data.past.initial_of(i);
-            detail::for_each_kept_state<Model>([&](auto at, int state) MYRIAD_LAMBDA {
+            s.data.past.for_each_kept([&](auto at, int state) MYRIAD_LAMBDA {
                 initial[at * s.data.past.stride] = get_lane(s.data.y[state], i);
             });
             const int level = has_history<Model> ? 0 : 1;
@@ -114,7 +115,7 @@ struct breaking_points {
                 bool one = false;
                 detail::for_each_lag<Model>(
                     [&](auto g, auto) MYRIAD_LAMBDA { one = one || list_type::has_come(s.breaks.arrival[i][g], t); });
-                set_lane(come, i, one);
+                set_lane(come, i, team_of_lags<Model>::any(one));
             });
             return come;
         } else {
@@ -137,6 +138,7 @@ struct breaking_points {
                 }
             });
         }
+        level = team_of_lags<Model>::smallest(level);
         if (level <= highest) list().mark(i, level, own);
         return level;
     }
@@ -191,7 +193,7 @@ struct breaking_points {
             const R time = s.breaks.arrival[i][g];
             if (time > t && time < end) end = time;
         });
-        return end;
+        return team_of_lags<Model>::smallest(end);
     }
 
     /// The longest step for which all times that it sees lie in the past.
@@ -201,7 +203,7 @@ struct breaking_points {
             const S lag = detail::lag_of<Model>(j, s.data.t, s.data.y, static_cast<const inputs<Model, S>&>(s.data));
             longest = select(lag > S(R(0)), smaller(longest, lag), longest);
         });
-        return longest;
+        return team_of_lags<Model>::smallest(longest);
     }
 
 private:
@@ -220,10 +222,13 @@ private:
         return beyond;
     }
     MYRIAD_FUNCTION void move_past(int i, R by) const {
-        s.data.past.moved_of(i) += by;
-        s.data.past.begin_of(i) += by;
         const std::int32_t oldest = s.data.past.oldest(i);
-        for (std::int32_t k = oldest > 0 ? oldest : 0; k <= past(i).steps; ++k) s.data.past.start_of(i, k) += by;
+        if (team_for<Model>::leads()) {
+            s.data.past.moved_of(i) += by;
+            s.data.past.begin_of(i) += by;
+            for (std::int32_t k = oldest > 0 ? oldest : 0; k <= past(i).steps; ++k) s.data.past.start_of(i, k) += by;
+        }
+        team_for<Model>::synchronise();  // all see it
     }
     /// Time runs forwards, lags are numbers from zero on, and no fixed step is longer than one that is constant.
     MYRIAD_FUNCTION bool lags_are_valid(int i) const {
@@ -233,7 +238,7 @@ private:
             const R ago = list().lag(i, j);
             valid = valid && ago >= least && (ago > R(0) || !knows_arrivals);
         });
-        return valid;
+        return team_of_lags<Model>::all(valid);
     }
 };
 

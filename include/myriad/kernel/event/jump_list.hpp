@@ -86,6 +86,7 @@ struct jump_list {
         detail::for_each_lag<Model>([&](auto g, auto j) MYRIAD_LAMBDA {
             if (s.breaks.next[i][g] == listed - 1) look_at(i, g, j, listed - 1);
         });
+        team_for<Model>::synchronise();  // all see the state that the others have put there
     }
     /// What lane i sees by lag g, as delayed value j, lies before the jump of that number, and not before the one
     /// before it.
@@ -127,7 +128,7 @@ struct jump_list {
         const bool by_slopes = all.terms == 2;
         R* const step = all.step_of(i, past(i).steps - (by_slopes ? 0 : 1));
         bool differs = false;
-        detail::for_each_kept_state<Model>([&](auto place, int state) MYRIAD_LAMBDA {
+        all.for_each_kept([&](auto place, int state) MYRIAD_LAMBDA {
             R end = R(0), size = R(0);
             for (int power = 0; power < (by_slopes ? 1 : all.terms); ++power) {
                 const R term = all.terms_of(step, place)[power * all.stride];
@@ -137,7 +138,7 @@ struct jump_list {
             const R moved = abs(end - get_lane(s.data.y[state], i));
             differs = differs || (state < first && !(moved <= R(64) * epsilon_of<R> * size));
         });
-        return differs;
+        return team_for<Model>::any(differs);
     }
 
 private:
@@ -165,7 +166,7 @@ private:
     MYRIAD_FUNCTION void put_state(int i) const {
         past_view<Model, S>& all = s.data.past;
         R* const step = all.step_of(i, past(i).steps - (all.terms == 2 ? 0 : 1));
-        detail::for_each_kept_state<Model>([&](auto place, int state) MYRIAD_LAMBDA {
+        all.for_each_kept([&](auto place, int state) MYRIAD_LAMBDA {
             R* const to = all.terms_of(step, place);
             to[0] = get_lane(s.data.y[state], i);
             for (int power = 1; power < all.terms; ++power) to[power * all.stride] = R(0);

@@ -278,10 +278,12 @@ private:
             if (events.is_stuck(i)) return status::event_accumulation;
         }
         if constexpr (has_delays<Model>) {
-            const auto trouble = s.data.past.lane[i].trouble;
-            if (trouble & past_trouble::lost) return status::history_overflow;
-            if (trouble & past_trouble::invalid) return status::invalid_delay;
-            if (trouble != past_trouble::none && !is_adaptive<Method>) return status::invalid_delay;
+            const auto is_in = [&](std::uint8_t trouble) MYRIAD_LAMBDA {
+                return team_for<Model>::any((s.data.past.lane[i].trouble & trouble) != 0);
+            };
+            if (is_in(past_trouble::lost)) return status::history_overflow;
+            if (is_in(past_trouble::invalid)) return status::invalid_delay;
+            if (is_in(past_trouble::not_yet) && !is_adaptive<Method>) return status::invalid_delay;
         }
         return stepping_type{args, s}.failure_of(i);
     }

@@ -17,10 +17,20 @@ inline constexpr bool is_of_units = false;
 template <class Unit, int units>
 inline constexpr bool is_of_units<coupled_units<Unit, units>> = true;
 
+/// Most bytes of shared memory, of the 227 KiB that a block has, that a team takes for its instance where each unit may
+/// have a value of the past for each of the others, in double precision.
+inline constexpr int most_bytes_of_team = 200 << 10;
 /// Whether a team can integrate a model by a method. Others are integrated by one thread per instance.
 template <class Model, class Method>
 constexpr bool runs_in_teams() {
-    return is_of_units<Model> && !rosenbrock_method<Method> && !has_delays<Model>;
+    if constexpr (!is_of_units<Model> || rosenbrock_method<Method>) {
+        return false;
+    } else if constexpr (has_delays<Model>) {
+        return !has_changing_lags_of_units<typename Model::unit_type> &&
+               team_layout<Model>::end * static_cast<int>(sizeof(double)) <= most_bytes_of_team;
+    } else {
+        return true;
+    }
 }
 
 /// Most states that one thread takes. Lorenz 96 by tsitouras_5, 131 072 instances, NVIDIA H100, ms for one thread and

@@ -32,6 +32,7 @@ struct trial_iteration {
                                     S(detail::absolute_tolerance_of(args, c)));
                 same = same & (abs(trial.y[c] - before[c]) <= S(R(converged)) * scale);
             }
+            same = team_for<Model>::all(same);
             is_within(open & same);
             open = open & !detail::past_is_known(s.data);
         }

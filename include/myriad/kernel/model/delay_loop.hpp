@@ -31,6 +31,9 @@ MYRIAD_FUNCTION auto in_tables_of_past(I i) {
 }
 template <class Model>
 using tables_type_of_past = std::remove_cv_t<decltype(tables_of_past_of<Model>)>;
+/// Of a team's whole model: where each state is among those kept.
+template <class Whole>
+MYRIAD_CONSTANT_MEMORY auto kept_places_of_states = make_places_of_states<Whole>();
 /// Where the state of delayed value j is among those kept, the number of its lag, and the first value with a lag.
 template <class Model, class J>
 MYRIAD_FUNCTION auto place_of_kept(J j) {
@@ -51,6 +54,9 @@ MYRIAD_FUNCTION void for_each_kept_state(Visit&& visit) {
         visit(place, static_cast<int>(in_tables_of_past<Model, &tables_type_of_past<Model>::state>(place)));
     });
 }
+/// Loops over the states of a team's thread.
+template <class Model>
+using component_loop_of_part = table_loop<(n_state<Model> <= most_delays_written_out)>;
 /// Calls `visit(j)` for each delayed value.
 template <class Model, class Visit>
 MYRIAD_FUNCTION void for_each_delayed(Visit&& visit) {

@@ -54,9 +54,9 @@ constexpr bool check_delays_of_units() {
             "lag(int delayed, const auto& p)` where all units have the same, `R lag(int unit, int delayed, const auto& "
             "p)` or, if it depends on time or state, `R lag(int unit, int delayed, const R& t, const auto& y, const "
             "auto& p)`, and public");
-        static_assert(declared_team<Unit>() <= 1,
-                      "teams of threads take no units with delays yet: leave out threads_per_instance, and one thread "
-                      "integrates an instance");
+        static_assert(declared_team<Unit>() <= 1 || !has_changing_lags_of_units<Unit>,
+                      "teams of threads take no lags that depend on time or state: leave out threads_per_instance, and "
+                      "one thread integrates an instance");
     }
     return true;
 }

@@ -16,6 +16,7 @@
 
 #include "myriad/kernel/core/team.hpp"
 #include "myriad/kernel/model/coupled_units.hpp"
+#include "myriad/kernel/model/delays_of_part.hpp"
 #include "myriad/kernel/model/team_memory.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
@@ -36,7 +37,8 @@ struct part_summaries<Whole, units> {
 };
 
 template <class Whole, int threads>
-struct part_of_units : part_summaries<Whole, (Whole::n_unit + threads - 1) / threads> {
+struct part_of_units : part_summaries<Whole, (Whole::n_unit + threads - 1) / threads>,
+                       delays_of_part<part_of_units<Whole, threads>, Whole, (Whole::n_unit + threads - 1) / threads> {
     using unit_type = typename Whole::unit_type;
     using layout = team_layout<Whole>;
     using together = thread_team<threads>;
@@ -174,31 +176,51 @@ struct part_of_units : part_summaries<Whole, (Whole::n_unit + threads - 1) / thr
         });
     }
 
-    /// Puts a number for each state, `own(c)` for the thread's, into the team's memory, one unit after the other.
-    template <class S, class Own>
-    static MYRIAD_FUNCTION S* put_states(Own&& own) {
+    /// Puts the thread's delayed values there, if there are any.
+    template <class S>
+    static MYRIAD_FUNCTION void put_past([[maybe_unused]] S* of_team, [[maybe_unused]] const auto& p) {
+        if constexpr (has_delays<Whole>) part_of_units::put_delayed(of_team + layout::delayed, p);
+    }
+    /// Puts a number for each state, `own(c)` for the thread's, into the team's memory, one unit after the other; and
+    /// what `put_more` puts there.
+    template <class S, class Own, class More>
+    static MYRIAD_FUNCTION S* put_states(Own&& own, More&& put_more) {
         auto* const of_team = reinterpret_cast<S*>(memory<real_of<S>>());
         together::synchronise();  // all have read what lies there
         MYRIAD_UNROLL
         for (int c = 0; c < n_state; ++c)
             if (is_own(c / states_of_unit)) of_team[whole_state(c)] = own(c);
+        put_more(of_team);
         together::synchronise();
         return of_team;
     }
-    /// Calls `use` for all of these numbers in the order of the states.
+    /// The states y with the values of the past that `p` has.
+    template <class S>
+    static MYRIAD_FUNCTION S* put_seen(const vec<S, n_state>& y, const auto& p) {
+        return put_states<S>([&](int c) MYRIAD_LAMBDA { return y[c]; },
+                             [&](S* of_team) MYRIAD_LAMBDA { put_past(of_team, p); });
+    }
+    /// Calls `use` for a number of each state in the order of the states.
     template <class R, class Own, class Use>
     static MYRIAD_FUNCTION void in_order(Own&& own, Use&& use) {
-        const R* const of_team = put_states<R>([&](int c) MYRIAD_LAMBDA { return static_cast<R>(own(c)); });
+        const R* const of_team =
+            put_states<R>([&](int c) MYRIAD_LAMBDA { return static_cast<R>(own(c)); }, [](R*) MYRIAD_LAMBDA {});
         using number = std::remove_cvref_t<decltype(own(0))>;
         for (int c = 0; c < detail::n_state<Whole>; ++c) use(static_cast<number>(of_team[c]));
     }
 
-    template <class R>
-    static MYRIAD_FUNCTION team_inputs<R> inputs_of_team(const auto& p) {
+    template <class R, class S = R>
+    using unit_inputs_type = unit_inputs<unit_type, units, R, R, team_inputs<Whole, R, S>>;
+    template <class R, class S = R>
+    static MYRIAD_FUNCTION team_inputs<Whole, R, S> inputs_of_team(const auto& p) {
         int first = layout::parameter;
         if constexpr (layout::keeps_inputs) first = p.in_memory;
         const R* const accessory = memory<R>() + first + n_parameter<Whole>;
-        return {memory<R>() + first, p.shared, p.shared_integer, accessory,
+        return {past_in_memory<Whole>(reinterpret_cast<const S*>(memory<R>())),
+                memory<R>() + first,
+                p.shared,
+                p.shared_integer,
+                accessory,
                 reinterpret_cast<const integer_of<R>*>(accessory + n_accessory<Whole>)};
     }
 
@@ -207,16 +229,15 @@ struct part_of_units : part_summaries<Whole, (Whole::n_unit + threads - 1) / thr
     MYRIAD_FUNCTION static vec<S, n_event> events(auto t, const vec<S, n_state>& y, const auto& p) {
         using R = real_of<S>;
         constexpr int count = n_unit_event<unit_type>;
-        S* const states = put_states<S>([&](int c) MYRIAD_LAMBDA { return y[c]; });
-        S* const of_all = states + detail::n_state<Whole>;
-        const team_inputs<R> inputs = inputs_of_team<R>(p);
+        S* const states = put_seen(y, p);
+        S* const of_all = states + layout::event;
+        const auto inputs = inputs_of_team<R, S>(p);
         MYRIAD_UNROLL
         for (int part = 0; part < parts; ++part) {
             if (!is_own(part)) continue;
             const int unit = unit_of(part);
-            const vec<S, count> of_unit =
-                unit_type::template events<S>(unit, t, unit_states<unit_type, units, const S>{states, unit},
-                                              unit_inputs<unit_type, units, R, R, team_inputs<R>>(inputs, unit));
+            const vec<S, count> of_unit = unit_type::template events<S>(
+                unit, t, unit_states<unit_type, units, const S>{states, unit}, unit_inputs_type<R, S>(inputs, unit));
             for (int e = 0; e < count; ++e) of_all[unit * count + e] = of_unit[e];
         }
         together::synchronise();
@@ -230,15 +251,14 @@ struct part_of_units : part_summaries<Whole, (Whole::n_unit + threads - 1) / thr
     MYRIAD_FUNCTION static vec<S, n_observed> observe(auto t, const vec<S, n_state>& y, const auto& p) {
         using R = real_of<S>;
         constexpr int count = n_unit_observed<unit_type>;
-        const S* const states = put_states<S>([&](int c) MYRIAD_LAMBDA { return y[c]; });
-        const team_inputs<R> inputs = inputs_of_team<R>(p);
+        const S* const states = put_seen(y, p);
+        const auto inputs = inputs_of_team<R, S>(p);
         vec<S, n_observed> values;
         MYRIAD_UNROLL
         for (int part = 0; part < parts; ++part) {
             const int unit = unit_of(part);
-            const vec<S, count> of_unit =
-                unit_type::template observe<S>(unit, t, unit_states<unit_type, units, const S>{states, unit},
-                                               unit_inputs<unit_type, units, R, R, team_inputs<R>>(inputs, unit));
+            const vec<S, count> of_unit = unit_type::template observe<S>(
+                unit, t, unit_states<unit_type, units, const S>{states, unit}, unit_inputs_type<R, S>(inputs, unit));
             for (int q = 0; q < count; ++q) values[part * count + q] = of_unit[q];
         }
         return values;
@@ -286,10 +306,11 @@ struct part_of_units : part_summaries<Whole, (Whole::n_unit + threads - 1) / thr
     template <class Lane, class Hook>
     static MYRIAD_FUNCTION action call(Lane& lane, Hook&& hook) {
         using R = std::remove_cvref_t<decltype(lane.t)>;
-        R* const states = put_states<R>([&](int c) MYRIAD_LAMBDA { return lane.y[c]; });
+        R* const states = put_seen(lane.y, lane);
         action wanted = action::proceed;
         if (together::leads()) {
-            team_lane<Whole, R, Lane> whole{lane.t,
+            team_lane<Whole, R, Lane> whole{past_in_memory<Whole>(static_cast<const R*>(states)),
+                                            lane.t,
                                             lane.t_begin,
                                             lane.t_end,
                                             lane.h,
@@ -328,11 +349,10 @@ struct part_of_units : part_summaries<Whole, (Whole::n_unit + threads - 1) / thr
             for (int c = 0; c < states_of_unit; ++c)
                 of_team[layout::state + c * units + unit_of(part)] = y[part * states_of_unit + c];
         }
+        put_past(of_team, p);
         together::synchronise();
-        const team_inputs<R> inputs = inputs_of_team<R>(p);
-        const auto inputs_of = [&](int unit) MYRIAD_LAMBDA {
-            return unit_inputs<unit_type, units, R, R, team_inputs<R>>(inputs, unit);
-        };
+        const auto inputs = inputs_of_team<R>(p);
+        const auto inputs_of = [&](int unit) MYRIAD_LAMBDA { return unit_inputs_type<R>(inputs, unit); };
         const auto states_of = [&](int part) MYRIAD_LAMBDA {
             return own_states<Whole, R>(of_team, unit_of(part), y.values + part * states_of_unit);
         };

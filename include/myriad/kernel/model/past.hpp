@@ -6,89 +6,13 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 
 #include "myriad/kernel/core/vec.hpp"
-#include "myriad/kernel/model/concepts.hpp"
-#include "myriad/kernel/model/delay_loop.hpp"
-#include "myriad/kernel/model/past_layout.hpp"
+#include "myriad/kernel/model/lane_past.hpp"
 #include "myriad/kernel/scalar/dual.hpp"
 #include "myriad/kernel/scalar/math.hpp"
-#include "myriad/kernel/scalar/select.hpp"
-
-namespace myriad::inline MYRIAD_TARGET {
-template <class Model, class S>
-struct inputs;
-}
 
 namespace myriad::detail::inline MYRIAD_TARGET {
-
-/// Whether lags depend on parameters and shared values alone: `lag(j, p)`. The jumps of the past then arrive at times
-/// that are known.
-template <class Model, class S>
-concept has_constant_lags = has_delays<Model> && requires(const inputs<Model, S>& p) {
-    Model::template lag<S>(0, p);
-};
-
-/// Why a lookup of a trial step is not to be believed.
-struct past_trouble {
-    static constexpr std::uint8_t none = 0;
-    static constexpr std::uint8_t not_yet = 1;  // a time that the steps have not reached
-    static constexpr std::uint8_t lost = 2;     // one that the ring no longer has
-    static constexpr std::uint8_t invalid = 4;  // the lag is negative or not a number
-};
-
-/// The step that a delayed value saw last, so that the next lookup in it reads little or nothing of the ring.
-template <class R>
-struct seen_step {
-    std::int32_t number;         // -1: what was before the beginning
-    R start, end, per_length;    // its times; none lies between them once it is forgotten, nor in a trial
-    R linear, quadratic, cubic;  // of the cubic polynomial
-    R value;                     // at its start; before the beginning everywhere
-
-    MYRIAD_FUNCTION void forget() {
-        start = infinity_of<R>;
-        end = -infinity_of<R>;
-    }
-    MYRIAD_FUNCTION bool has(R time) const { return (time >= start) & (time < end); }
-};
-
-/// The past of one lane. Steps are numbered from the beginning; step k is in slot k modulo their number.
-template <class Model, class R>
-struct lane_past {
-    static constexpr int values = n_delayed<Model>, lags = n_lag<Model>;
-    static constexpr std::int32_t none = std::numeric_limits<std::int32_t>::max();
-
-    std::int64_t instance;
-    std::int32_t steps;         // stored so far
-    bool begins;                // the next begins anew: what it begins with is not the end of the one before
-    bool resumes;               // it may: a phase has begun, or a hook has changed something
-    bool has_trial;             // the one after them holds the trial that is iterated
-    std::int32_t from[lags];    // of each lag: the first step that may be seen now; -1: what was before
-    std::int32_t before[lags];  // and the first that must not be seen yet, a jump; or none
-    mutable seen_step<R> seen[values];
-    mutable R recalled;  // the time of the functions that saw all values last, if lags are constant; or NaN
-    mutable std::uint8_t trouble;
-
-    /// What may be seen has changed, of all delayed values or of those with lag g.
-    MYRIAD_FUNCTION void forget() const {
-        recalled = nan_of<R>;
-        detail::for_each_delayed<Model>([&](auto j) MYRIAD_LAMBDA { seen[j].forget(); });
-    }
-    template <class G>
-    MYRIAD_FUNCTION void forget_lag(G g) const {
-        recalled = nan_of<R>;
-        detail::for_each_delayed<Model>([&](auto j) MYRIAD_LAMBDA {
-            if (number_of_lag<Model>(j) == g) seen[j].forget();
-        });
-    }
-    /// The ring has lost the steps before this one.
-    MYRIAD_FUNCTION void forget_before(std::int32_t oldest) const {
-        detail::for_each_delayed<Model>([&](auto j) MYRIAD_LAMBDA {
-            if (seen[j].number >= 0 && seen[j].number < oldest) seen[j].forget();
-        });
-    }
-};
 
 /// The past of all lanes.
 template <class Model, class S>
@@ -127,20 +51,41 @@ struct past_view {
     /// The first step that is still there while the next one is written.
     MYRIAD_FUNCTION std::int32_t oldest(int i) const { return lane[i].steps + 2 - slots; }
 
+    /// Where the state of delayed value j is among those kept.
+    template <class J>
+    MYRIAD_FUNCTION auto place_of(int i, J j) const {
+        if constexpr (team_size<Model> == 1) {
+            return place_of_kept<Model>(j);
+        } else {
+            return lane[i].delayed[j];
+        }
+    }
+    /// Calls `visit(place, number of the state)` for each state that is kept; in a team for those of the thread.
+    template <class Visit>
+    MYRIAD_FUNCTION void for_each_kept(Visit&& visit) const {
+        if constexpr (team_size<Model> == 1) {
+            detail::for_each_kept_state<Model>(visit);
+        } else {
+            component_loop_of_part<Model>::template range<0, n_state<Model>>([&](auto c) MYRIAD_LAMBDA {
+                if (lane[0].own[c] >= 0) visit(lane[0].own[c], static_cast<int>(c));
+            });
+        }
+    }
+
     /// The length of the last step.
     MYRIAD_FUNCTION R last_length(int i) const {
         return lane[i].steps > 0 ? start_of(i, lane[i].steps) - start_of(i, lane[i].steps - 1) : R(0);
     }
 
     /// Whether functions at t have seen all delayed values last, if lags are constant, so that they are as they were.
-    MYRIAD_FUNCTION bool has_recalled([[maybe_unused]] const S& t) const {
+    MYRIAD_FUNCTION bool has_recalled(const S& t) const {
         bool has = has_constant_lags<Model, S>;
-        if constexpr (has_constant_lags<Model, S>) MYRIAD_UNROLL
+        MYRIAD_UNROLL
         for (int i = 0; i < lanes; ++i) has = has && lane[i].recalled == get_lane(t, i);
         return has;
     }
-    MYRIAD_FUNCTION void set_recalled([[maybe_unused]] const S& t) const {
-        if constexpr (has_constant_lags<Model, S>) MYRIAD_UNROLL
+    MYRIAD_FUNCTION void set_recalled(const S& t) const {
+        MYRIAD_UNROLL
         for (int i = 0; i < lanes; ++i) lane[i].recalled = get_lane(t, i);
     }
 
@@ -167,7 +112,7 @@ struct past_view {
                 value = fma(theta, fma(R(3) * theta, seen.cubic, seen.quadratic + seen.quadratic), seen.linear);
             if constexpr (order == 2) value = R(2) * fma(R(3) * theta, seen.cubic, seen.quadratic);
         } else {
-            const R* const here = terms_of(step_of(i, seen.number), place_of_kept<Model>(j));
+            const R* const here = terms_of(step_of(i, seen.number), place_of(i, j));
             const auto term = [&](int power) MYRIAD_LAMBDA {
                 R factor = here[power * stride];
                 for (int k = 0; k < order; ++k) factor = static_cast<R>(power - k) * factor;
@@ -193,8 +138,8 @@ private:
         R *const step = step_of(i, k), *const next = step_of(i, k + 1);
         kept_step at{step[0], next[0], R(0), R(0), R(0), R(0)};
         if (terms == 2) {
-            const R* const here = terms_of(step, place_of_kept<Model>(j));
-            const R* const there = terms_of(next, place_of_kept<Model>(j));
+            const R* const here = terms_of(step, place_of(i, j));
+            const R* const there = terms_of(next, place_of(i, j));
             at.here = here[0], at.slope_here = here[stride];
             at.there = there[0], at.slope_there = there[stride];
         }
@@ -295,7 +240,7 @@ private:
             // delay on an NVIDIA H200, ms: 38.3 where the end of the one after the next is prefetched, 40.0 by that of
             // the next, 48.8 without.
             R* const later = step_of(i, k + 3);
-            const R* const there = terms_of(later, place_of_kept<Model>(j));
+            const R* const there = terms_of(later, place_of(i, j));
             MYRIAD_PREFETCH(later), MYRIAD_PREFETCH(there), MYRIAD_PREFETCH(there + stride);
         }
     }
@@ -310,7 +255,7 @@ private:
             return;
         }
         seen.end = begin_of(i);
-        seen.value = initial_of(i)[place_of_kept<Model>(j) * stride];
+        seen.value = initial_of(i)[place_of(i, j) * stride];
     }
 };
 
@@ -335,6 +280,7 @@ MYRIAD_FUNCTION void look_back(past_view<Model, S>& past, const Arguments& args,
     detail::for_each_delayed<Model>([&](auto j)
                                         MYRIAD_LAMBDA { past.lane[i].seen[j].number = past.lane[i].steps - 1; });
     past.lane[i].forget();
+    if constexpr (team_size<Model> != 1) past.lane[i].find();
 }
 
 /// Lane i of them.

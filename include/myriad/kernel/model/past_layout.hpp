@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "myriad/kernel/core/static_for.hpp"
+#include "myriad/kernel/core/team.hpp"
 #include "myriad/kernel/methods/dense.hpp"
 #include "myriad/kernel/model/concepts.hpp"
 
@@ -51,59 +52,99 @@ MYRIAD_FUNCTION bool same_lags_are_first() {
     return true;
 }
 
-/// How many states are kept, and how many lags there are.
-struct numbers_of_past {
-    int kept = 0, lags = 0;
-};
-/// What of the past is kept, and which delayed value sees what of it.
-template <class Model, int kept, int lags>
-struct tables_of_past {
-    int place[n_delayed<Model>];  // of each delayed value: that of its state among the states that are kept
-    int lag[n_delayed<Model>];    // and that of its lag among the lags
-    int state[kept];              // the states that are kept
-    int first[lags];              // the first delayed value of each lag
-};
-/// Calls `put_state(j, place, is_new)` and `put_lag(j, place, is_new)` for all delayed values.
+/// Calls `put(j, place, is_new)` for all delayed values with the place of their state among those kept. Returns how
+/// many are kept.
 template <class Model>
-constexpr numbers_of_past visit_delayed_values(auto&& put_state, auto&& put_lag) {
-    if (!states_of_delays_exist<Model>() || !same_lags_are_first<Model>()) return {1, 1};  // refused elsewhere
-    int place_of_state[n_state<Model>] = {}, place_of_lag[n_delayed<Model>] = {};
-    numbers_of_past numbers;
+constexpr int place_states_of_delays(auto&& put) {
+    if (!states_of_delays_exist<Model>()) return 1;  // refused elsewhere
+    int place_of_state[n_state<Model>] = {}, kept = 0;
     for (int j = 0; j < n_delayed<Model>; ++j) {
         int& place = place_of_state[Model::delayed_state(j)];  // plus one
         const bool is_new = place == 0;
-        if (is_new) place = ++numbers.kept;
-        put_state(j, place - 1, is_new);
+        if (is_new) place = ++kept;
+        put(j, place - 1, is_new);
+    }
+    return kept;
+}
+/// The same for the lags.
+template <class Model>
+constexpr int place_lags(auto&& put) {
+    if (!same_lags_are_first<Model>()) return 1;  // refused elsewhere
+    int place_of_lag[n_delayed<Model>] = {}, lags = 0;
+    for (int j = 0; j < n_delayed<Model>; ++j) {
         const int first = first_of_lag<Model>(j);
-        if (first == j) place_of_lag[j] = numbers.lags++;
-        put_lag(j, place_of_lag[first], first == j);
+        if (first == j) place_of_lag[j] = lags++;
+        put(j, place_of_lag[first], first == j);
     }
-    return numbers;
+    return lags;
 }
 template <class Model>
-constexpr numbers_of_past numbers_of_past_of() {
-    if constexpr (has_delays<Model> && has_delayed_state<Model>) {
-        return visit_delayed_values<Model>([](int, int, bool) {}, [](int, int, bool) {});
+inline constexpr bool knows_past = has_delays<Model>&& has_delayed_state<Model>;
+/// Number of states whose past is kept. A part of a model has a place for each of the whole's.
+template <class Model>
+inline constexpr int n_kept = [] {
+    if constexpr (team_size<Model> != 1) {
+        return n_kept<whole_of<Model>>;
+    } else if constexpr (knows_past<Model>) {
+        return place_states_of_delays<Model>([](int, int, bool) {});
     } else {
-        return {};
+        return 0;
+    }
+}();
+/// Number of lags whose jumps arrive at different times; of a part of a model, those of its own delayed values.
+template <class Model>
+inline constexpr int n_lag = [] {
+    if constexpr (knows_past<Model>) {
+        return place_lags<Model>([](int, int, bool) {});
+    } else {
+        return 0;
+    }
+}();
+/// The team whose threads have lags of their own; one thread where they have the same.
+template <class Model>
+constexpr int threads_with_own_lags() {
+    if constexpr (team_size<Model> == 1) {
+        return 1;
+    } else {
+        return as_part<Model>::has_own_lags ? team_size<Model> : 1;
     }
 }
-/// Number of states whose past is kept, and of lags whose jumps arrive at different times.
 template <class Model>
-inline constexpr int n_kept = numbers_of_past_of<Model>().kept;
+using team_of_lags = thread_team<threads_with_own_lags<Model>()>;
+/// What of the past is kept, and which delayed value sees what of it.
 template <class Model>
-inline constexpr int n_lag = numbers_of_past_of<Model>().lags;
+struct tables_of_past {
+    int place[n_delayed<Model>];  // of each delayed value: that of its state among the states that are kept
+    int lag[n_delayed<Model>];    // and that of its lag among the lags
+    int state[n_kept<Model>];     // the states that are kept
+    int first[n_lag<Model>];      // the first delayed value of each lag
+};
 template <class Model>
 constexpr auto make_tables_of_past() {
-    tables_of_past<Model, n_kept<Model>, n_lag<Model>> tables = {};
+    tables_of_past<Model> tables = {};
     const auto put = [](int* place, int* first, int j, int at, int value, bool is_new) {
         place[j] = at;
         if (is_new) first[at] = value;
     };
-    visit_delayed_values<Model>(
-        [&](int j, int at, bool is_new) { put(tables.place, tables.state, j, at, Model::delayed_state(j), is_new); },
-        [&](int j, int at, bool is_new) { put(tables.lag, tables.first, j, at, j, is_new); });
+    if constexpr (team_size<Model> == 1) {  // in a team, which states these are depends on the thread
+        place_states_of_delays<Model>([&](int j, int at, bool is_new) {
+            put(tables.place, tables.state, j, at, Model::delayed_state(j), is_new);
+        });
+    }
+    place_lags<Model>([&](int j, int at, bool is_new) { put(tables.lag, tables.first, j, at, j, is_new); });
     return tables;
+}
+/// The place of each state among those kept; -1 for others.
+template <class Model>
+struct places_of_states {
+    int place[n_state<Model>];
+};
+template <class Model>
+constexpr auto make_places_of_states() {
+    places_of_states<Model> of = {};
+    for (int& place : of.place) place = -1;
+    place_states_of_delays<Model>([&](int j, int at, bool) { of.place[Model::delayed_state(j)] = at; });
+    return of;
 }
 
 /// Numbers that a step has in the ring: the time at its start and, of each state kept, either value and slope there

@@ -147,13 +147,13 @@ MYRIAD_FUNCTION past_in_motion<Model, S> moving_past(const dual<S>& t, const vec
     return with;
 }
 
-/// The lanes whose lookups may be believed, since the last call of `forget_trial`.
+/// The lanes whose lookups may be believed, those of all threads of a team, since the last call of `forget_trial`.
 template <class Model, class S>
 MYRIAD_FUNCTION mask_of<S> past_is_known(const lane_data<Model, S>& data) {
     mask_of<S> known = mask_of<S>(true);
     MYRIAD_UNROLL
     for (int i = 0; i < lanes_of<S>; ++i) set_lane(known, i, data.past.lane[i].trouble == past_trouble::none);
-    return known;
+    return team_for<Model>::all(known);
 }
 /// A new trial begins.
 template <class Model, class S>

@@ -18,10 +18,11 @@ struct team_layout {
     using unit = typename Whole::unit_type;
     static constexpr int units = Whole::n_unit;
     // Of states, for a right-hand side component by component, so that neighbours' are side by side, else unit by unit;
-    // behind them the event functions, of which both may be dual numbers.
-    static constexpr int state = 0;
-    static constexpr int parameter = n_event<Whole> > 0 || n_observed<Whole> > 0 ? 2 * (n_state<Whole> + n_event<Whole>)
-                                                                                 : n_state<Whole>;
+    // behind them the event functions, and values of the past, unit by unit. All of these may be dual numbers for event
+    // functions and what is observed.
+    static constexpr int state = 0, event = n_state<Whole>, delayed = event + n_event<Whole>;
+    static constexpr int seen = delayed + n_delayed<Whole>;
+    static constexpr int parameter = n_event<Whole> > 0 || n_observed<Whole> > 0 ? 2 * seen : seen;
     static constexpr int accessory = parameter + n_parameter<Whole>;  // of the system, then of the units, as parameters
     static constexpr int integer_accessory = accessory + n_accessory<Whole>;
     static constexpr int published = integer_accessory + n_integer_accessory<Whole>;
@@ -84,9 +85,27 @@ struct own_states : seen_states<Whole, R> {
     }
 };
 
-/// What units read besides states.
-template <class R>
-struct team_inputs {
+/// Values of the past in the team's memory, if there are any.
+template <class S, bool there>
+struct past_of_team {};
+template <class S>
+struct past_of_team<S, true> {
+    const S* delayed;
+};
+template <class Whole, class S>
+using past_of_team_of = past_of_team<S, has_delays<Whole>>;
+template <class Whole, class S>
+MYRIAD_FUNCTION past_of_team_of<Whole, S> past_in_memory([[maybe_unused]] const S* memory) {
+    if constexpr (has_delays<Whole>) {
+        return {memory + team_layout<Whole>::delayed};
+    } else {
+        return {};
+    }
+}
+
+/// What units read besides states; values of the past are numbers of type S.
+template <class Whole, class R, class S>
+struct team_inputs : past_of_team_of<Whole, S> {
     const R* parameter;
     const R* shared;
     const std::int32_t* shared_integer;
@@ -101,7 +120,7 @@ struct team_inputs {
 
 /// The whole system as hooks see it: the members of `lane`, of which the team has the components in its memory.
 template <class Whole, class R, class Lane>
-struct team_lane {
+struct team_lane : past_of_team_of<Whole, R> {
     const R& t;
     decltype(Lane::t_begin) t_begin;
     decltype(Lane::t_end) t_end;

@@ -51,13 +51,13 @@ MYRIAD_FUNCTION void resume(past_view<Model, S>& past, const step_data<Method, S
     if (!MYRIAD_UNLIKELY(lane.resumes)) return;
     lane.resumes = false;
     bool same = true;
-    detail::for_each_kept_state<Model>([&](auto place, int c) MYRIAD_LAMBDA {
+    past.for_each_kept([&](auto place, int c) MYRIAD_LAMBDA {
         const auto close = [](R a, R b) MYRIAD_LAMBDA { return abs(a - b) <= R(64) * epsilon_of<R> * abs(b); };
         const R* const here = past.terms_of(past.step_of(i, lane.steps), place);
         same = same && close(here[0], get_lane(step.y[c], i)) &&
                close(here[past.stride], get_lane(step.trial.slope_start()[c], i));
     });
-    if (same || lane.begins) return;
+    if (team_for<Model>::all(same) || lane.begins) return;
     const R time = past.start_of(i, lane.steps);
     ++lane.steps;
     past.start_of(i, lane.steps) = time;
@@ -73,7 +73,7 @@ MYRIAD_FUNCTION void write_step(past_view<Model, S>& past, const accepted_step<M
         for_each_lane(seen.accepted, [&](int i) MYRIAD_LAMBDA { detail::resume<Model, Method, S>(past, step, i); });
     const auto next_of = [&](int i) MYRIAD_LAMBDA { return past.step_of(i, past.lane[i].steps + 1); };
     for_each_lane(seen.accepted, [&](int i) MYRIAD_LAMBDA { *next_of(i) = get_lane(seen.t1, i); });
-    detail::for_each_kept_state<Model>([&](auto place, int c) MYRIAD_LAMBDA {
+    past.for_each_kept([&](auto place, int c) MYRIAD_LAMBDA {
         if constexpr (history_terms<Method> == 2) {
             for_each_lane(seen.accepted, [&](int i) MYRIAD_LAMBDA {
                 if (past.lane[i].begins) {
@@ -95,6 +95,7 @@ MYRIAD_FUNCTION void write_step(past_view<Model, S>& past, const accepted_step<M
             });
         }
     });
+    team_for<Model>::synchronise();  // all see what the others have written
 }
 
 /// An observer: see observers.hpp.
