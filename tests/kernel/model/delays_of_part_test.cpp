@@ -133,8 +133,8 @@ TEST_CASE("a team of threads has a conduction time for each of many pairs as one
     const auto fill = [](auto& e) {
         fill_states(e);
         e.parameter(0) = 0.5;
-        e.parameter(1) =
-            Eigen::ArrayXd::LinSpaced(instances, 6, 50.5);  // lags a little, and much, shorter than the steps
+        // Lags a little, and much, shorter than the steps.
+        e.parameter(1) = Eigen::ArrayXd::LinSpaced(instances, 6, 50.5);
         for (int k = 0; k < 81; ++k) e.shared(k) = 0.3 + 0.01 * ((37 * k) % 81);
         e.time_domain(0, 1.5);
     };
