@@ -253,8 +253,7 @@ struct integrator {
 private:
     static constexpr bool locates_breaks = [] {
         if constexpr (has_delays<Model>) {
-            using breaks = breaking_points<Model, Method, S>;
-            return breaks::tracks && !breaks::knows_arrivals;
+            return breaking_points<Model, Method, S>::may_locate;
         } else {
             return false;
         }

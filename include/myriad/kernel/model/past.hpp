@@ -30,6 +30,16 @@ concept has_constant_lags = has_delays<Model> && requires(const inputs<Model, S>
     Model::template lag<S>(0, p);
 };
 
+/// The same, where it is only known when the model runs.
+template <class Model, class R>
+MYRIAD_FUNCTION bool lags_are_constant() {
+    if constexpr (gives_tables_of_past<Model>) {
+        return Model::lags_are_constant();
+    } else {
+        return has_constant_lags<Model, R>;
+    }
+}
+
 /// Why a lookup of a trial step is not to be believed.
 struct past_trouble {
     static constexpr std::uint8_t none = 0;
@@ -56,7 +66,7 @@ struct seen_step {
 /// The past of one lane. Steps are numbered from the beginning; step k is in slot k modulo their number.
 template <class Model, class R>
 struct lane_past {
-    static constexpr int values = n_delayed<Model>, lags = n_lag<Model>;
+    static constexpr auto values = n_delayed<Model>, lags = n_lag<Model>;
     static constexpr std::int32_t none = std::numeric_limits<std::int32_t>::max();
 
     std::int64_t instance;
@@ -64,9 +74,9 @@ struct lane_past {
     bool begins;                // the next begins anew: what it begins with is not the end of the one before
     bool resumes;               // it may: a phase has begun, or a hook has changed something
     bool has_trial;             // the one after them holds the trial that is iterated
-    std::int32_t from[lags];    // of each lag: the first step that may be seen now; -1: what was before
-    std::int32_t before[lags];  // and the first that must not be seen yet, a jump; or none
-    mutable seen_step<R> seen[values];
+    vec<std::int32_t, lags> from;    // of each lag: the first step that may be seen now; -1: what was before
+    vec<std::int32_t, lags> before;  // and the first that must not be seen yet, a jump; or none
+    mutable vec<seen_step<R>, values> seen;
     mutable std::uint8_t trouble;
 
     /// What may be seen has changed, of all delayed values or of those with lag g.
@@ -107,12 +117,12 @@ struct past_view {
     }
     MYRIAD_FUNCTION R* initial_of(int i) const { return ring + slots * row + lane[i].instance; }
     /// How far the past was moved, by phases whose time begins again.
-    MYRIAD_FUNCTION R& moved_of(int i) const { return initial_of(i)[n_kept<Model> * stride]; }
+    MYRIAD_FUNCTION R& moved_of(int i) const { return initial_of(i)[MYRIAD_LENGTH(n_kept<Model>) * stride]; }
     /// The time at which it began, moved likewise.
-    MYRIAD_FUNCTION R& begin_of(int i) const { return initial_of(i)[(n_kept<Model> + 1) * stride]; }
+    MYRIAD_FUNCTION R& begin_of(int i) const { return initial_of(i)[(MYRIAD_LENGTH(n_kept<Model>) + 1) * stride]; }
     /// Number c of an entry of the list of jumps: breaking_points.hpp.
     MYRIAD_FUNCTION R& jump_number(int i, std::int32_t number, int c) const {
-        const std::int64_t place = n_kept<Model> + 2 + (number & (slots - 1)) * jump_numbers<Model> + c;
+        const std::int64_t place = MYRIAD_LENGTH(n_kept<Model>) + 2 + (number & (slots - 1)) * jump_numbers<Model> + c;
         return initial_of(i)[place * stride];
     }
     /// The time at which step k begins; that of the step after the last is written, too.
@@ -220,7 +230,7 @@ private:
         if (k < 0) return see_initial(j, i, seen);
         R length = at.end - at.start, reach = length;
         bool is_short = false;
-        if constexpr (!has_constant_lags<Model, R>) {
+        if (!detail::lags_are_constant<Model, R>()) {
             // Before a jump a step is continued beyond its end: the last that is not short, as the polynomial of a
             // short one is, farther away, one of roundings. Jumps lie in steps without length.
             const auto find_short = [&]() MYRIAD_LAMBDA {
@@ -279,7 +289,7 @@ MYRIAD_FUNCTION void look_back(past_view<Model, S>& past, const Arguments& args,
     past.stride = args.size;
     past.slots = args.history.slots;
     past.terms = history_terms<Method>;
-    past.row = history_fields(n_kept<Model>, history_terms<Method>) * args.size;
+    past.row = history_fields(MYRIAD_LENGTH(n_kept<Model>), history_terms<Method>) * args.size;
     past.lane[i].instance = index;
     past.lane[i].steps = index >= 0 ? args.history.place[index] : 0;
     past.lane[i].begins = false;

@@ -23,6 +23,10 @@ MYRIAD_FUNCTION bool is_delayed_slope(int j) {
         return false;
     }
 }
+/// Whether what is known of a model's delayed values is known when it runs alone: one that is interpreted gives the
+/// tables of what is kept, and whether its lags are constant, itself.
+template <class Model>
+concept gives_tables_of_past = requires { Model::tables_of_past(); };
 /// Whether each delayed value is of a state.
 template <class Model>
 MYRIAD_FUNCTION bool states_of_delays_exist() {
@@ -90,9 +94,21 @@ constexpr numbers_of_past numbers_of_past_of() {
 }
 /// Number of states whose past is kept, and of lags whose jumps arrive at different times.
 template <class Model>
-inline constexpr int n_kept = numbers_of_past_of<Model>().kept;
+inline constexpr extent n_kept = [] {
+    if constexpr (gives_tables_of_past<Model>) {
+        return Model::n_kept;
+    } else {
+        return extent(numbers_of_past_of<Model>().kept);
+    }
+}();
 template <class Model>
-inline constexpr int n_lag = numbers_of_past_of<Model>().lags;
+inline constexpr extent n_lag = [] {
+    if constexpr (gives_tables_of_past<Model>) {
+        return Model::n_lag;
+    } else {
+        return extent(numbers_of_past_of<Model>().lags);
+    }
+}();
 template <class Model>
 constexpr auto make_tables_of_past() {
     tables_of_past<Model, n_kept<Model>, n_lag<Model>> tables = {};
