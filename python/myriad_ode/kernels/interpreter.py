@@ -143,7 +143,7 @@ def _tape(writer: Writer, model: RecordedModel, lengths: list[int], entries: lis
     where_waiting = [0, 0, 0, 0] if queue is None else [
         place[queue.accessories[0]][1], place[queue.integers[0]][1], queue.capacity, queue.values]
     return _core.Tape(writer.functions, writer.codes, writer.values, writer.registers, lengths, entries,
-                      is_autonomous(model),
+                      is_autonomous(model) and not model.delays,
                       [i for i, e in enumerate(edges) if not e.initial_value],
                       [i for i, e in enumerate(edges) if not e.persistent], where_waiting,
                       *((-1, -1) if queue is None else (len(model.stops), queue.seed)),

@@ -2,8 +2,10 @@
 // The inputs of a model's functions for one instance, for host code that calls them.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 
 #include "myriad/kernel/model/lane.hpp"
 #include "myriad/kernel/model/recall.hpp"
@@ -28,11 +30,12 @@ template <class Model, class R>
 void put_constant_past(inputs<Model, R>& p, const argument_head<R>& a, std::int64_t i) {
     if constexpr (has_delays<Model>) {
         constexpr int slots = 8, steps = slots * history_fields(0, 0);
-        thread_local R ring[steps + MYRIAD_CAPACITY(n_kept<Model>) + 2] = {};  // the inputs are used at once
+        thread_local std::unique_ptr<R[]> ring;  // the inputs are used at once
+        ring.reset(new R[static_cast<std::size_t>(steps + MYRIAD_LENGTH(n_kept<Model>) + 2)]());
         detail::for_each_kept_state<Model>([&](auto at, int state) { ring[steps + at] = a.state[state * a.size + i]; });
         p.past = {};  // without steps
         p.later = {};
-        p.past.ring = ring;
+        p.past.ring = ring.get();
         p.past.stride = 1;
         p.past.slots = slots;
         p.past.terms = 1;  // which is read, and not used

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: MIT
+"""What follows, before any step, from the constant lags of a model with delays: how many fixed steps of the past are to
+be kept, and whether the tables of its histories begin early enough."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..base.errors import Error, at, users_line
+from ..models.extended import Extended
+from ..models.methods import fixed_step
+from ..models.recorded import RecordedModel
+from ..symbolic import symbols as sym
+from ..symbolic.evaluate import evaluate
+from ..symbolic.node import symbols_of, text
+from ..symbolic.table import tables_in
+
+if TYPE_CHECKING:
+    from ..models.any_model import AnyModel
+    from .options import Options
+
+_order, _most_jumps, _largest = 4, 1024, 1048576  # of runge_kutta_4; breaking_points.hpp; of history_steps
+_with_actions = 1024  # steps that are kept at least where actions jump, as often as they like
+
+
+def _recorded(model: AnyModel) -> RecordedModel | None:
+    """The model that knows its lags as expressions."""
+    own = model.model if isinstance(model, Extended) else model
+    return own if isinstance(own, RecordedModel) and own.delays else None
+
+
+def _value(expression: Any, given: Mapping[str, Any], time: Any = None) -> Any:
+    """The value of an expression of parameters and shared values in each instance; None if it is not known here."""
+    values = {}
+    for symbol in symbols_of([expression]):
+        value = time if symbol is sym.time else given.get(symbol.value[1])
+        if value is None or hasattr(value, "address"):  # on a GPU
+            return None
+        values[symbol] = value
+    return evaluate([expression], values)[0]
+
+
+def _jumps(lags: int) -> int:
+    """The jumps of the past that may be followed within the longest of so many lags, for one at the begin."""
+    jumps = 1
+    for k in range(1, _order + 1):
+        jumps = jumps * (lags + k) // k
+        if jumps > _most_jumps and k > 2:
+            break
+    return jumps
+
+
+def steps_to_keep(model: AnyModel, method: str, given: Mapping[str, Any], domain: tuple[Any, Any],
+                  options: Options) -> int | None:
+    """The steps of the past that an instance reads at most, of fixed steps and constant lags: those of its longest lag,
+    or of the time from the begin on, with the steps without length and those that are shorter at jumps. None where that
+    is not known."""
+    own = _recorded(model)
+    if own is None or method not in fixed_step or options.history_steps != 0 or not options.step:
+        return None
+    changed = {target for _, assignments in own._hooks for target, _ in assignments}
+    lags = list({id(one.lag): one.lag for one in own.delays}.values())
+    if own.writes_time_domain or any(one in changed or one.value[0] not in ("parameter", "shared", "shared_integer") for one in symbols_of(lags)):
+        return None
+    values = [_value(lag, given) for lag in lags]
+    if any(value is None for value in values) or any(hasattr(end, "address") for end in domain):
+        return None
+    within = options.phases * (options.phase_length or np.subtract(domain[1], domain[0]))
+    known = [np.where(np.isfinite(value), value, 0.0) for value in values]  # infinite ones never see a step
+    reach = np.minimum(functools.reduce(np.maximum, known), np.where(within > 0, within, 0.0))
+    needed = int(min(np.max(np.ceil(reach / options.step), initial=0), _largest)) + 2 * _jumps(len(lags)) + 4
+    acts = own.events or own.stops or own.triggers or own.after_step
+    return min(max(needed, _with_actions) if acts else needed, _largest)
+
+
+def refuse_short_tables(model: AnyModel, given: Mapping[str, Any], begin: Any) -> None:
+    """Refuses a history by a table that has no value where a constant lag looks at the begin, or at the begin itself."""
+    own = _recorded(model)
+    if own is None or hasattr(begin, "address"):
+        return
+    for one in own.delays:
+        history = own.history.get(one.symbol.value[1].state)
+        if history is None or not one.is_constant or not tables_in(history):
+            continue
+        if (lag := _value(one.lag, given)) is None:
+            continue
+        for time in (begin - lag, begin):
+            found = _value(history, given, time)
+            if found is None or not np.isnan(found).any():
+                continue
+            missing, _ = np.broadcast_arrays(time, found)
+            raise Error(f"the history of {one.state}{at(users_line())} has no value at {missing[np.isnan(found)][0]:g}, "
+                        f"which `{text(one.symbol)}` reads: give a table from the longest lag before the begin up to "
+                        "the begin, or outside=\"hold\"")
