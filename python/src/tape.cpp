@@ -88,9 +88,7 @@ openmp::instruction_set instructions_of_interpreter() {
 
 kernel_library interpreter(const std::string& method, const tape& model, int shared, int shared_integers) {
     const tape_lengths& n = model.length;
-    const std::string kind = n.delayed > 0                 ? "with_delays"
-                             : n.stop > 0 || n.trigger > 0 ? "with_triggers"
-                                                           : "in_packs";
+    const std::string kind = n.delayed > 0 ? "with_delays" : n.stop > 0 || n.trigger > 0 ? "with_triggers" : "in_packs";
     for (const named_kernel& k : kernels) {
         if (method != k.method || kind != k.kind) continue;
         const tape_kernel found = k.get();
@@ -183,7 +181,7 @@ void interpreted::keep_past(const tape_facts& facts) {
     tape_.length.lag = static_cast<std::int32_t>(first_.size());
     require(tape_.length.kept <= tape_kept, "the past of ", tape_.length.kept, " states is kept, and the interpreter ",
             "keeps that of ", tape_kept, " at the most", host::cure, "install a C++ compiler");
-    tape_.past = {place_.data(),         lag_.data(),     kept_state_.data(),   first_.data(),
+    tape_.past = {place_.data(),         lag_.data(),     kept_state_.data(), first_.data(),
                   delayed_state_.data(), is_slope_.get(), facts.constant_lags};
 }
 

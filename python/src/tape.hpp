@@ -36,7 +36,8 @@
     X(shared)               \
     X(shared_integer)       \
     X(accessory)            \
-    X(integer_accessory) X(delayed) X(event_count) X(time) X(step) X(next_step) X(phase) X(instance) X(t_begin) X(t_end) X(waiting)
+    X(integer_accessory)    \
+    X(delayed) X(event_count) X(time) X(step) X(next_step) X(phase) X(instance) X(t_begin) X(t_end) X(waiting)
 #define MYRIAD_TAPE_STORE(X) \
     X(result)                \
     X(state)                 \
@@ -120,12 +121,13 @@ inline constexpr int tape_batches = 2;         ///< SIMD registers per pack
 
 inline constexpr int tape_events = 251, tape_triggers = 241, tape_stops = 37, tape_kept = 4093;  // most of them
 // The kinds of components of which a tape has a number of its own, and the most that there may be.
-#define MYRIAD_TAPE_LENGTHS(X)   \
-    X(state, most_registers)     \
-    X(parameter, most_registers) \
-    X(accessory, most_registers) \
-    X(integer_accessory, most_registers) X(event, tape_events) X(stop, tape_stops) X(trigger, tape_triggers) \
-        X(delayed, most_registers) X(kept, tape_kept) X(lag, most_registers)
+#define MYRIAD_TAPE_LENGTHS(X)           \
+    X(state, most_registers)             \
+    X(parameter, most_registers)         \
+    X(accessory, most_registers)         \
+    X(integer_accessory, most_registers) \
+    X(event, tape_events)                \
+    X(stop, tape_stops) X(trigger, tape_triggers) X(delayed, most_registers) X(kept, tape_kept) X(lag, most_registers)
 
 /// The interpreters: for packs of models without stops, triggers and delays, and for one instance at a time of all
 /// others. Compiling them as one for packs would take three times as long.

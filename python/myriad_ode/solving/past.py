@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from .options import Options
 
 _order, _most_jumps, _largest = 4, 1024, 1048576  # of runge_kutta_4; breaking_points.hpp; of history_steps
-_with_actions = 1024  # steps that are kept at least where actions jump, as often as they like
+_with_jumps = 1024  # steps that are kept at least where actions jump, or slopes of the past, as often as they like
 
 
 def _recorded(model: AnyModel) -> RecordedModel | None:
@@ -64,7 +64,7 @@ def steps_to_keep(model: AnyModel, method: str, given: Mapping[str, Any], domain
         return None
     changed = {target for _, assignments in own._hooks for target, _ in assignments}
     lags = list({id(one.lag): one.lag for one in own.delays}.values())
-    if own.writes_time_domain or any(one in changed or one.value[0] not in ("parameter", "shared", "shared_integer") for one in symbols_of(lags)):
+    if own.writes_time_domain or changed & {*symbols_of(lags)} or not all(one.is_constant for one in own.delays):
         return None
     values = [_value(lag, given) for lag in lags]
     if any(value is None for value in values) or any(hasattr(end, "address") for end in domain):
@@ -72,13 +72,13 @@ def steps_to_keep(model: AnyModel, method: str, given: Mapping[str, Any], domain
     within = options.phases * (options.phase_length or np.subtract(domain[1], domain[0]))
     known = [np.where(np.isfinite(value), value, 0.0) for value in values]  # infinite ones never see a step
     reach = np.minimum(functools.reduce(np.maximum, known), np.where(within > 0, within, 0.0))
-    needed = int(min(np.max(np.ceil(reach / options.step), initial=0), _largest)) + 2 * _jumps(len(lags)) + 4
-    acts = own.events or own.stops or own.triggers or own.after_step
-    return min(max(needed, _with_actions) if acts else needed, _largest)
+    steps = min(float(np.max(np.ceil(reach / options.step), initial=0)), _largest)
+    jumps_anew = changed or own.events or own.stops or any(one.is_slope for one in own.delays)
+    return min(max(int(steps) + 2 * _jumps(len(lags)) + 4, _with_jumps if jumps_anew else 0), _largest)
 
 
 def refuse_short_tables(model: AnyModel, given: Mapping[str, Any], begin: Any) -> None:
-    """Refuses a history by a table that has no value where a constant lag looks at the begin, or at the begin itself."""
+    """Refuses a history by a table that has no value where a constant lag looks at the begin, or at the begin."""
     own = _recorded(model)
     if own is None or hasattr(begin, "address"):
         return
@@ -92,7 +92,7 @@ def refuse_short_tables(model: AnyModel, given: Mapping[str, Any], begin: Any) -
             found = _value(history, given, time)
             if found is None or not np.isnan(found).any():
                 continue
-            missing, _ = np.broadcast_arrays(time, found)
-            raise Error(f"the history of {one.state}{at(users_line())} has no value at {missing[np.isnan(found)][0]:g}, "
-                        f"which `{text(one.symbol)}` reads: give a table from the longest lag before the begin up to "
-                        "the begin, or outside=\"hold\"")
+            missing = np.broadcast_to(time, np.shape(found))[np.isnan(found)][0]
+            raise Error(f"the history of {one.state}{at(users_line())} has no value at {missing:g}, which "
+                        f"`{text(one.symbol)}` reads: give a table from the longest lag before the begin up to the "
+                        "begin, or outside=\"hold\"")

@@ -26,14 +26,15 @@ _outside = ("hold", "periodic", "extrapolate", "nan")
 
 
 def interpolate(t: Operand, times: npt.ArrayLike, values: npt.ArrayLike, kind: Literal["linear", "cubic"] = "linear",
-                outside: Literal["hold", "periodic", "extrapolate", "nan"] = "hold", name: str = "forcing") -> Expression:
+                outside: Literal["hold", "periodic", "extrapolate", "nan"] = "hold",
+                name: str = "forcing") -> Expression:
     """The value at t, any expression, of data that are known at increasing times.
 
     kind     "linear", as numpy.interp, or "cubic", the spline with continuous second derivative whose first and last
              two pieces are one polynomial each, as scipy.interpolate.CubicSpline; periodic data have a periodic spline
     outside  "hold": the first and last value beyond the ends; "periodic": the data repeat, their first and last value
-             being equal; "extrapolate": the first and last piece go on; "nan": there is no value, so that what reads one
-             ends as `not_finite`, as a history should that is not known
+             being equal; "extrapolate": the first and last piece go on; "nan": no value, so that an instance that reads
+             one ends as `not_finite`
     name     of the table; give each of several data of a model its own
 
     Evenly spaced times are found by their number, others by bisection. A linear interpolation has kinks at its times,

@@ -70,10 +70,10 @@ struct lane_past {
     static constexpr std::int32_t none = std::numeric_limits<std::int32_t>::max();
 
     std::int64_t instance;
-    std::int32_t steps;         // stored so far
-    bool begins;                // the next begins anew: what it begins with is not the end of the one before
-    bool resumes;               // it may: a phase has begun, or a hook has changed something
-    bool has_trial;             // the one after them holds the trial that is iterated
+    std::int32_t steps;              // stored so far
+    bool begins;                     // the next begins anew: what it begins with is not the end of the one before
+    bool resumes;                    // it may: a phase has begun, or a hook has changed something
+    bool has_trial;                  // the one after them holds the trial that is iterated
     vec<std::int32_t, lags> from;    // of each lag: the first step that may be seen now; -1: what was before
     vec<std::int32_t, lags> before;  // and the first that must not be seen yet, a jump; or none
     mutable vec<seen_step<R>, values> seen;

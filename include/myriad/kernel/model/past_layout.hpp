@@ -26,7 +26,9 @@ MYRIAD_FUNCTION bool is_delayed_slope(int j) {
 /// Whether what is known of a model's delayed values is known when it runs alone: one that is interpreted gives the
 /// tables of what is kept, and whether its lags are constant, itself.
 template <class Model>
-concept gives_tables_of_past = requires { Model::tables_of_past(); };
+concept gives_tables_of_past = requires {
+    Model::tables_of_past();
+};
 /// Whether each delayed value is of a state.
 template <class Model>
 MYRIAD_FUNCTION bool states_of_delays_exist() {
