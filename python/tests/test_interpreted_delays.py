@@ -24,7 +24,8 @@ of_lags = dict(sweep={tau: np.linspace(0.3, 1.4, 21), sigma: np.linspace(1.5, 0.
 @pytest.mark.parametrize("model, call", [
     (two_lags, dict(of_lags, method="dormand_prince_5", phases=3, carry_on_step=True, **exact)),
     (two_lags, dict(of_lags, method="runge_kutta_4", step=1 / 64)),
-    (neutral, dict(sweep={tau: np.linspace(0.3, 1.4, 21), k: 0.4}, time=(0, 4), method="rodas_5p", rtol=1e-7, history_steps=1024)),
+    (neutral, dict(sweep={tau: np.linspace(0.3, 1.4, 21), k: 0.4}, time=(0, 4), method="rodas_5p", rtol=1e-7,
+                   history_steps=1024)),
     (watched, dict(of_watched, method="tsitouras_5", history_steps=1024, **exact)),
     (test_delays.relay, dict(test_delays.in_short_rings, sweep=test_delays.sweep_of(test_delays.relay),
                              method="dormand_prince_5", history_steps=128)),
