@@ -266,6 +266,14 @@ def test_fixed_steps_keep_what_their_longest_lag_needs():
                    method="runge_kutta_4", step=0.01, interpreted=True)
     assert run.report.failed == 0
     assert run["x"][-1] == pytest.approx(1 - 60 + 30**2 / 2, abs=1e-9)
+    axes = my.grid({tau: my.linspace(0.5, 30, 3), sigma: [1.0, 29.0]})
+    both = my.model({x: -my.delayed(x, tau) - my.delayed(x, sigma)})
+    call = dict(start={x: 1}, time=(0, 40), method="runge_kutta_4", step=0.01, interpreted=True)
+    studied = my.study(both, axes, keep=[x], **call).run()
+    np.testing.assert_array_equal(studied["x_end"].ravel(), my.solve(both, axes, **call)["x"].ravel())
+    assert (studied["status"] == "success").all()
+    own = my.study(of_table("linear", np.array([-2.0, 0.0])), {tau: my.uniform(2.5, 3)}, draws=8, **{**call, "start": {}})
+    assert own.run().by_status == {"not_finite": 8}
 
 
 def test_a_state_may_begin_elsewhere_than_its_history_ends():

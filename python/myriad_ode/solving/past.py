@@ -5,16 +5,19 @@ be kept, and whether the tables of its histories begin early enough."""
 from __future__ import annotations
 
 import functools
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..base.errors import Error, at, users_line
+from ..models.components import short_name
 from ..models.extended import Extended
 from ..models.methods import fixed_step
 from ..models.recorded import RecordedModel
 from ..symbolic import symbols as sym
+from ..symbolic.axes import Random
 from ..symbolic.evaluate import evaluate
 from ..symbolic.node import symbols_of, text
 from ..symbolic.table import tables_in
@@ -24,13 +27,31 @@ if TYPE_CHECKING:
     from .options import Options
 
 _order, _most_jumps, _largest = 4, 1024, 1048576  # of runge_kutta_4; breaking_points.hpp; of history_steps
+_most_combined = 10_000_000  # instances of a study, of which as many values are combined
 _with_jumps = 1024  # steps that are kept at least where actions jump, or slopes of the past, as often as they like
+
+
+def values_of_axes(axes: Sequence[Mapping[str, Any]], constants: Mapping[str, Any]) -> dict[str, Any]:
+    """What a study knows of its instances, by the names of components: numbers, and arrays along the axes, so that
+    those of several axes are combined. Random values are not known."""
+    known = {short_name(name): float(value) for name, value in constants.items() if not isinstance(value, Random)}
+    if math.prod(len(next(iter(axis.values()))) for axis in axes) > _most_combined:
+        return known
+    for number, axis in enumerate(axes):
+        for name, values in axis.items():
+            known[short_name(name)] = np.asarray(values, float).reshape(-1, *[1] * number)
+    return known
 
 
 def _recorded(model: AnyModel) -> RecordedModel | None:
     """The model that knows its lags as expressions."""
     own = model.model if isinstance(model, Extended) else model
     return own if isinstance(own, RecordedModel) and own.delays else None
+
+
+def _changed(model: RecordedModel) -> set[Any]:
+    """The symbols of what hooks assign."""
+    return {target for _, assignments in model._hooks for target, _ in assignments}
 
 
 def _value(expression: Any, given: Mapping[str, Any], time: Any = None) -> Any:
@@ -62,12 +83,12 @@ def steps_to_keep(model: AnyModel, method: str, given: Mapping[str, Any], domain
     own = _recorded(model)
     if own is None or method not in fixed_step or options.history_steps != 0 or not options.step:
         return None
-    changed = {target for _, assignments in own._hooks for target, _ in assignments}
+    changed = _changed(own)
     lags = list({id(one.lag): one.lag for one in own.delays}.values())
     if own.writes_time_domain or changed & {*symbols_of(lags)} or not all(one.is_constant for one in own.delays):
         return None
     values = [_value(lag, given) for lag in lags]
-    if any(value is None for value in values) or any(hasattr(end, "address") for end in domain):
+    if any(one is None or hasattr(one, "address") for one in (*values, *domain)):
         return None
     within = options.phases * (options.phase_length or np.subtract(domain[1], domain[0]))
     known = [np.where(np.isfinite(value), value, 0.0) for value in values]  # infinite ones never see a step
@@ -80,13 +101,13 @@ def steps_to_keep(model: AnyModel, method: str, given: Mapping[str, Any], domain
 def refuse_short_tables(model: AnyModel, given: Mapping[str, Any], begin: Any) -> None:
     """Refuses a history by a table that has no value where a constant lag looks at the begin, or at the begin."""
     own = _recorded(model)
-    if own is None or hasattr(begin, "address"):
+    if own is None or begin is None or hasattr(begin, "address"):
         return
     for one in own.delays:
         history = own.history.get(one.symbol.value[1].state)
         if history is None or not one.is_constant or not tables_in(history):
             continue
-        if (lag := _value(one.lag, given)) is None:
+        if (lag := _value(one.lag, given)) is None or _changed(own) & {*symbols_of([one.lag, history])}:
             continue
         for time in (begin - lag, begin):
             found = _value(history, given, time)
