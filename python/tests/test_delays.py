@@ -272,8 +272,9 @@ def test_fixed_steps_keep_what_their_longest_lag_needs():
     studied = my.study(both, axes, keep=[x], **call).run()
     np.testing.assert_array_equal(studied["x_end"].ravel(), my.solve(both, axes, **call)["x"].ravel())
     assert (studied["status"] == "success").all()
-    own = my.study(of_table("linear", np.array([-2.0, 0.0])), {tau: my.uniform(2.5, 3)}, draws=8, **{**call, "start": {}})
-    assert own.run().by_status == {"not_finite": 8}
+    drawn = my.study(of_table("linear", np.array([-2.0, 0.0])), {tau: my.uniform(2.5, 3)}, draws=8,
+                     **{**call, "start": {}})
+    assert drawn.run().by_status == {"not_finite": 8}
 
 
 def test_a_state_may_begin_elsewhere_than_its_history_ends():
