@@ -34,7 +34,8 @@ _with_jumps = 1024  # steps that are kept at least where actions jump, or slopes
 def values_of_axes(axes: Sequence[Mapping[str, Any]], constants: Mapping[str, Any]) -> dict[str, Any]:
     """What a study knows of its instances, by the names of components: numbers, and arrays along the axes, so that
     those of several axes are combined. Random values are not known."""
-    known: dict[str, Any] = {short_name(name): float(value) for name, value in constants.items() if not isinstance(value, Random)}
+    numbers = {name: value for name, value in constants.items() if not isinstance(value, Random)}
+    known: dict[str, Any] = {short_name(name): float(value) for name, value in numbers.items()}
     if math.prod(len(next(iter(axis.values()))) for axis in axes) > _most_combined:
         return known
     for number, axis in enumerate(axes):
