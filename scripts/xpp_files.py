@@ -9,7 +9,7 @@ within 1e-4 of XPPAUT's, plus 1e-5 of the largest value of the variable (XPPAUT 
 "right so far" where this holds as long as XPPAUT agrees with itself, at least for a tenth of the time, as in chaos
 (models with algebraic equations are compiled, and compared after the start, where XPPAUT has not solved them yet);
 "refused" where Myriad says that it does not support something; "wrong" where a value is not within that; "undecided"
-where XPPAUT does not agree with itself; "not compared" where it has noise, or delays, which need a compiler; "failed"
+where XPPAUT does not agree with itself; "not compared" where it has noise, or delays without --delays; "failed"
 where it ends otherwise; "time limit" where it takes too long; and "no reference" where XPPAUT does not end. Both
 programs run in processes of their own. The exit status is 1 if a model is wrong or failed.
 """
@@ -167,7 +167,7 @@ def main():
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path, metavar="FOLDER")
     add_options(parser, time_limit=10.0)
-    parser.add_argument("--delays", action="store_true", help="compare models with delays, which are compiled, too")
+    parser.add_argument("--delays", action="store_true", help="compare models with delays, too")
     parser.add_argument("--end", type=float, default=100.0, help="the longest time (100)")
     parser.add_argument("--methods", default="dormand_prince_5,rodas_5p",
                         help="of integration, each where those before it fail (dormand_prince_5,rodas_5p)")

@@ -281,7 +281,9 @@ NB_MODULE(_core, m) {
                                                           const std::array<int, 7>& length, const tape_entries& entries,
                                                           bool autonomous, const std::vector<int>& false_at_first,
                                                           const std::vector<int>& lapsing,
-                                                          const std::array<int, 4>& queue, int due, std::int64_t seed) {
+                                                          const std::array<int, 4>& queue, int due, std::int64_t seed,
+                                                          const std::vector<std::array<int, 3>>& delays,
+                                                          bool constant_lags) {
         require(codes.size() == values.size() && codes.size() == registers.size(), "a tape's parts differ in length");
         std::vector<tape_step> steps;
         for (std::size_t i = 0; i < codes.size(); ++i) {
@@ -293,6 +295,8 @@ NB_MODULE(_core, m) {
             steps.push_back({values[i], narrow(0), narrow(1), narrow(2), narrow(3), static_cast<tape_code>(codes[i])});
         }
         require(queue[3] <= tape_values, "actions that wait have at most ", tape_values, " values");
+        std::vector<tape_delay> past;
+        for (const auto& [state, same_lag, is_slope] : delays) past.push_back({state, same_lag, is_slope != 0});
         new (self) interpreted(functions, std::move(steps),
                                {{length[0], length[1], length[2], length[3], length[4], length[5], length[6]},
                                 entries,
@@ -301,7 +305,9 @@ NB_MODULE(_core, m) {
                                 lapsing,
                                 {queue[0], queue[1], queue[2], queue[3]},
                                 due,
-                                seed});
+                                seed,
+                                past,
+                                constant_lags});
     });
     nb::class_<library>(m, "Library")
         .def("__init__",

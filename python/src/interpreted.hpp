@@ -18,9 +18,16 @@ namespace myriad::python {
 /// those of which there are several.
 using tape_functions = std::vector<std::vector<std::pair<std::uint32_t, std::uint32_t>>>;
 
+/// A delayed value: its state, the first delayed value that is as long ago, and whether it is the state's slope.
+struct tape_delay {
+    std::int32_t state = 0, same_lag = 0;
+    bool is_slope = false;
+};
+
 /// What a tape has besides its functions: how many components of each kind, the entries of the Jacobian if a stiff
 /// method is to know them; numbers of triggers whose initial value is false, and of those that do not persist; the
-/// queue, the stop at which its actions run, and the seed of their order.
+/// queue, the stop at which its actions run, and the seed of their order; delayed values, and whether their lags are
+/// constant.
 struct tape_facts {
     tape_lengths length;
     tape_entries entries;
@@ -29,6 +36,8 @@ struct tape_facts {
     tape_queue queue;
     int due = -1;
     std::int64_t seed = -1;
+    std::vector<tape_delay> past;
+    bool constant_lags = true;
 };
 
 /// A tape with its memory. Throws `error` if it is not a valid one.
@@ -40,9 +49,12 @@ public:
     const tape& get() const { return tape_; }
 
 private:
+    void keep_past(const tape_facts& facts);
+
     std::vector<tape_step> steps_;
     std::vector<std::vector<tape_function>> series_;
-    std::unique_ptr<bool[]> false_at_first_, lapsing_;
+    std::unique_ptr<bool[]> false_at_first_, lapsing_, is_slope_;
+    std::vector<std::int32_t> place_, lag_, kept_state_, first_, delayed_state_;  // as in `tape_past`
     stored_matrix matrix_;
     tape tape_;
 };

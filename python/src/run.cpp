@@ -113,7 +113,8 @@ void check_memory_of_interpreter(const library& kernel, const named_shape& shape
     constexpr double vectors = 100, few = 10;
     const detail::model_numbers& n = kernel.facts().model;
     const tape_lengths& length = kernel.model()->length;
-    const double lanes = length.stop > 0 || length.trigger > 0 ? 1 : tape_batches * 32.0 / sizeof(R);
+    const double lanes =
+        length.stop > 0 || length.trigger > 0 || length.delayed > 0 ? 1 : tape_batches * 32.0 / sizeof(R);
     const double parts = std::min(static_cast<double>(threads), std::ceil(static_cast<double>(size) / lanes));
     const double reals = vectors * n.n_state + few * (n.n_parameter + n.n_accessory + n.n_integer_accessory) +
                          2 * static_cast<double>(kernel.facts().matrix.factor_entries);

@@ -88,8 +88,7 @@ openmp::instruction_set instructions_of_interpreter() {
 
 kernel_library interpreter(const std::string& method, const tape& model, int shared, int shared_integers) {
     const tape_lengths& n = model.length;
-    const bool with_triggers = n.stop > 0 || n.trigger > 0;
-    const std::string kind = with_triggers ? "with_triggers" : "in_packs";
+    const std::string kind = n.delayed > 0 ? "with_delays" : n.stop > 0 || n.trigger > 0 ? "with_triggers" : "in_packs";
     for (const named_kernel& k : kernels) {
         if (method != k.method || kind != k.kind) continue;
         const tape_kernel found = k.get();
@@ -100,6 +99,7 @@ kernel_library interpreter(const std::string& method, const tape& model, int sha
         numbers.n_accessory = n.accessory, numbers.n_integer_accessory = n.integer_accessory;
         numbers.n_shared = shared, numbers.n_shared_integer = shared_integers;
         numbers.writes_parameters = true;
+        numbers.n_kept = n.kept;
         if (found.solves_linear_systems) {
             const tape_matrix& of = model.matrix;
             const std::int32_t all = n.state * n.state;
@@ -112,7 +112,7 @@ kernel_library interpreter(const std::string& method, const tape& model, int sha
         }
         made.instruction_set = found.instruction_set;
         made.run = found.run;
-        const auto of_instances = instances_of_tape(with_triggers);
+        const auto of_instances = instances_of_tape(model);
         made.functions = of_instances.functions;
         made.behaviour = of_instances.behaviour;
         return made;
@@ -146,11 +146,43 @@ interpreted::interpreted(const tape_functions& functions, std::vector<tape_step>
     for (const int trigger : facts.lapsing) lapsing_[static_cast<std::size_t>(trigger)] = true;
     tape_.false_at_first = false_at_first_.get(), tape_.lapsing = lapsing_.get();
     tape_.length = facts.length;
+    keep_past(facts);
     tape_.matrix = matrix_.tables();
     tape_.autonomous = facts.autonomous;
     tape_.queue = facts.queue;
     tape_.due = facts.due;
     tape_.seed = facts.seed;
+}
+
+void interpreted::keep_past(const tape_facts& facts) {
+    const std::size_t n = facts.past.size();
+    std::vector<std::int32_t> place_of_state(static_cast<std::size_t>(facts.length.state) + 1, -1);
+    is_slope_.reset(new bool[n + 1]());
+    for (std::size_t j = 0; j < n; ++j) {
+        const tape_delay& one = facts.past[j];
+        require(one.state >= 0 && one.state < facts.length.state && one.same_lag >= 0 &&
+                    static_cast<std::size_t>(one.same_lag) <= j,
+                "a delayed value of a tape is out of range");
+        std::int32_t& place = place_of_state[static_cast<std::size_t>(one.state)];
+        if (place < 0) {
+            place = static_cast<std::int32_t>(kept_state_.size());
+            kept_state_.push_back(one.state);
+        }
+        place_.push_back(place);
+        const auto number = static_cast<std::int32_t>(j);
+        if (one.same_lag == number) first_.push_back(number);
+        lag_.push_back(one.same_lag == number ? static_cast<std::int32_t>(first_.size()) - 1
+                                              : lag_[static_cast<std::size_t>(one.same_lag)]);
+        delayed_state_.push_back(one.state);
+        is_slope_[j] = one.is_slope;
+    }
+    tape_.length.delayed = static_cast<std::int32_t>(n);
+    tape_.length.kept = static_cast<std::int32_t>(kept_state_.size());
+    tape_.length.lag = static_cast<std::int32_t>(first_.size());
+    require(tape_.length.kept <= tape_kept, "the past of ", tape_.length.kept, " states is kept, and the interpreter ",
+            "keeps that of ", tape_kept, " at the most", host::cure, "install a C++ compiler");
+    tape_.past = {place_.data(),         lag_.data(),     kept_state_.data(), first_.data(),
+                  delayed_state_.data(), is_slope_.get(), facts.constant_lags};
 }
 
 void start_tape_team(openmp::team* all) {

@@ -36,7 +36,8 @@
     X(shared)               \
     X(shared_integer)       \
     X(accessory)            \
-    X(integer_accessory) X(event_count) X(time) X(step) X(next_step) X(phase) X(instance) X(t_begin) X(t_end) X(waiting)
+    X(integer_accessory)    \
+    X(delayed) X(event_count) X(time) X(step) X(next_step) X(phase) X(instance) X(t_begin) X(t_end) X(waiting)
 #define MYRIAD_TAPE_STORE(X) \
     X(result)                \
     X(state)                 \
@@ -118,17 +119,19 @@ struct tape_function {
 inline constexpr int most_registers = 0xffff;  ///< of a function, and components of a kind
 inline constexpr int tape_batches = 2;         ///< SIMD registers per pack
 
-inline constexpr int tape_events = 251, tape_triggers = 241, tape_stops = 37;  // most of them
+inline constexpr int tape_events = 251, tape_triggers = 241, tape_stops = 37, tape_kept = 4093;  // most of them
 // The kinds of components of which a tape has a number of its own, and the most that there may be.
-#define MYRIAD_TAPE_LENGTHS(X)   \
-    X(state, most_registers)     \
-    X(parameter, most_registers) \
-    X(accessory, most_registers) \
-    X(integer_accessory, most_registers) X(event, tape_events) X(stop, tape_stops) X(trigger, tape_triggers)
+#define MYRIAD_TAPE_LENGTHS(X)           \
+    X(state, most_registers)             \
+    X(parameter, most_registers)         \
+    X(accessory, most_registers)         \
+    X(integer_accessory, most_registers) \
+    X(event, tape_events)                \
+    X(stop, tape_stops) X(trigger, tape_triggers) X(delayed, most_registers) X(kept, tape_kept) X(lag, most_registers)
 
-/// The interpreters: for packs of models without stops and triggers, and for one instance at a time of all others.
-/// Compiling both as one for packs would take three times as long.
-#define MYRIAD_TAPE_KINDS(X) X(in_packs) X(with_triggers)
+/// The interpreters: for packs of models without stops, triggers and delays, and for one instance at a time of all
+/// others. Compiling them as one for packs would take three times as long.
+#define MYRIAD_TAPE_KINDS(X) X(in_packs) X(with_triggers) X(with_delays)
 
 inline constexpr int tape_values = 32;  ///< that an action which waits can have
 
@@ -138,9 +141,11 @@ struct tape_queue {
 };
 
 // The functions of which a model has several: for each event, stop or trigger; for each trigger also the action that
-// has waited, and its priority. Conditions read sides as states, and times of stops the number as the time.
+// has waited, and its priority; for each delayed value how long ago it is, and what it was before the beginning.
+// Conditions read sides as states, and times of stops the number as the time.
 #define MYRIAD_TAPE_SERIES(X) \
-    X(after_event) X(stop_time) X(after_stop) X(condition) X(after_trigger) X(late_action) X(priority)
+    X(after_event)            \
+    X(stop_time) X(after_stop) X(condition) X(after_trigger) X(late_action) X(priority) X(lag) X(history)
 
 // Between these limits the factors of a stiff method's matrix are sparse, as those of a model that is compiled.
 inline constexpr int largest_dense_matrix = 6, most_matrix_updates = 4096;
@@ -156,6 +161,13 @@ struct tape_matrix {
                        *lower_entry = nullptr, *lower_row = nullptr, *upper_entry = nullptr, *upper_column = nullptr,
                        *first_update = nullptr, *target = nullptr, *target_row = nullptr, *position = nullptr,
                        *pivot_row = nullptr;
+};
+
+/// Which delayed value sees what, as `tables_of_past`; and whether each is a slope.
+struct tape_past {
+    const std::int32_t *place = nullptr, *lag = nullptr, *state = nullptr, *first = nullptr, *delayed_state = nullptr;
+    const bool* is_slope = nullptr;
+    bool constant_lags = true;  ///< no lag reads the time or a state
 };
 
 /// How many components of each kind a model has.
@@ -178,6 +190,7 @@ struct tape {
     const bool *false_at_first = nullptr,
                *lapsing = nullptr;  ///< triggers whose initial value is false; that do not persist
     tape_queue queue;
+    tape_past past;
     int due = -1;            ///< the stop at which actions run that have waited
     std::int64_t seed = -1;  ///< of their order where priorities tie; -1: that in which they were put
 };

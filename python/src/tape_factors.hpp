@@ -34,6 +34,7 @@ public:
     /// Factorises shift I - J. Returns false in lanes where that is singular.
     template <class Model>
     mask_of<S> factorise(const S& t, const S& shift, const vec<S, n_state>& y, const inputs<Model, S>& p) {
+        if constexpr (detail::has_delays<Model>) detail::recall<Model>(t, y, p);
         return is_dense() ? factorise_dense<Model>(t, shift, y, p) : factorise_sparse<Model>(t, shift, y, p);
     }
     void solve(vec<S, n_state>& b) const {

@@ -93,18 +93,21 @@ constexpr detail::instance_functions<R> functions_of_model{.generate = &generate
 template <class Model, class R>
 constexpr detail::behaviour_function<R> behaviour_of_model = &detail::show_behaviour<Model, R>;
 
+template <class Model>
+constexpr called_instances instances_of{&functions_of_model<Model, double>, &behaviour_of_model<Model, double>};
+
 }  // namespace
 
-called_instances instances_of_tape(bool with_triggers) {
-    using plain = tape_models::in_packs;
-    using triggered = tape_models::with_triggers;
-    if (with_triggers) return {&functions_of_model<triggered, double>, &behaviour_of_model<triggered, double>};
-    return {&functions_of_model<plain, double>, &behaviour_of_model<plain, double>};
+called_instances instances_of_tape(const tape& model) {
+    if (model.length.delayed > 0) return instances_of<tape_models::with_delays>;
+    if (model.length.stop > 0 || model.length.trigger > 0) return instances_of<tape_models::with_triggers>;
+    return instances_of<tape_models::in_packs>;
 }
 
 template <class R>
 detail::instance_functions<R> functions_of_tape(const tape& model, double (*stability_limit)()) {
     detail::instance_functions<R> all;
+    if (model.length.delayed > 0) return all;  // they know no past
     if (stability_limit != nullptr) {
         all.rhs = [](const detail::argument_head<R>& a, std::int64_t i, R t, const R* y, R* slopes) {
             evaluate(current_tape->rhs, t, y, inputs_of_instance<R>(a, i), slopes);

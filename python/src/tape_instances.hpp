@@ -16,6 +16,6 @@ detail::instance_functions<R> functions_of_tape(const tape& model, double (*stab
 struct called_instances {
     const void *functions, *behaviour;
 };
-called_instances instances_of_tape(bool with_triggers);
+called_instances instances_of_tape(const tape& model);
 
 }  // namespace myriad::python

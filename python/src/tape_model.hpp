@@ -146,7 +146,7 @@ struct triggered_tape_model : tape_model<true> {
         return fits ? wanted : myriad::action::overflow;
     }
 
-private:
+protected:
     /// The one result of a function.
     template <class R, class States, class Inputs>
     static void read(const tape_function& f, const R& t, const States& y, const Inputs& p, R& result) {
@@ -154,10 +154,35 @@ private:
     }
 };
 
+/// The same with values of the past.
+struct delayed_tape_model : triggered_tape_model {
+    static constexpr extent n_delayed = tape_extent::delayed, n_kept = tape_extent::kept, n_lag = tape_extent::lag;
+
+    static const tape_past& tables_of_past() { return current_tape->past; }
+    static bool lags_are_constant() { return current_tape->past.constant_lags; }
+    static int delayed_state(int j) { return current_tape->past.delayed_state[j]; }
+    static bool is_delayed_slope(int j) { return current_tape->past.is_slope[j]; }
+    static bool has_history(int j) { return !current_tape->history[j].empty(); }
+    template <class R>
+    [[gnu::noinline]] static R lag(int j, const R& t, const myriad::vec<R, n_state>& y, const auto& p) {
+        R ago(real_of<R>(0));
+        read(current_tape->lag[j], t, y, p, ago);
+        return ago;
+    }
+    template <class R>
+    [[gnu::noinline]] static R history(int j, const R& t, const auto& p) {
+        R before(real_of<R>(0));
+        const R* const no_state = nullptr;
+        read(current_tape->history[j], t, no_state, p, before);
+        return before;
+    }
+};
+
 /// The models of MYRIAD_TAPE_KINDS.
 namespace tape_models {
 using in_packs = tape_model<false>;
 using with_triggers = triggered_tape_model;
+using with_delays = delayed_tape_model;
 }  // namespace tape_models
 
 }  // namespace myriad::python

@@ -155,6 +155,9 @@ template <class R, class Source>
             case tape_code::load_integer_accessory:
                 r[to] = real_lanes<R>(s.p.integer_accessory[a]);
                 break;
+            case tape_code::load_delayed:
+                if constexpr (requires { s.p.delayed[0]; }) r[to] = s.p.delayed[a];
+                break;
             default:
                 if (code >= tape_code::powr && code <= tape_code::floor_divide) {
                     apply_function(code, r[a], r[b], r[to]);

@@ -14,6 +14,7 @@ import pytest
 
 import myriad_ode as my
 from myriad_ode.models.delays import own_names
+from myriad_ode.solving.past import steps_to_keep
 
 x, y, k_seen = my.states("x y k_seen")
 k, tau, sigma = my.parameters("k tau sigma")
@@ -203,6 +204,79 @@ def test_a_history_is_what_was_before_and_where_the_state_begins():
     np.testing.assert_allclose(run["x_sample"], np.cos(run["t_sample"]), atol=1e-8)
 
 
+def of_table(kind, times, outside="nan"):
+    """x' = -x(t - pi / 2), where a table has cos(t)."""
+    return my.model({x: -my.delayed(x, tau)}, name="of_table",
+                    history={x: my.interpolate(t, times, np.cos(times), kind=kind, outside=outside)})
+
+
+@pytest.mark.parametrize("kind, interpreted, error, call", [
+    ("cubic", False, 1e-9, dict(method="dormand_prince_5", **exact)),
+    ("cubic", True, 1e-9, dict(method="rodas_5p", history_steps=1024, **exact)),
+    ("linear", True, 2e-5, dict(method="runge_kutta_4", step=0.01))])
+def test_tables_are_histories(kind, interpreted, error, call):
+    for times in (np.linspace(-2, 0, 201), -np.linspace(0, 2**0.5, 201)[::-1]**2):
+        run = my.solve(of_table(kind, times), {tau: np.pi / 2}, time=(0, 5), samples=11, interpreted=interpreted,
+                       **call)
+        assert run.report.failed == 0
+        np.testing.assert_allclose(run["x_sample"], np.cos(run["t_sample"]), atol=error)
+
+
+def test_a_table_that_ends_too_early_is_refused_or_a_status():
+    times = np.linspace(-2, 0, 21)
+    known = dict(time=(0, 1), interpreted=True)
+    for lag, time, missing in ((3.0, (0, 1), "-3"), (np.array([1.0, 2.5]), (0, 1), "-2.5"), (1.0, (0.5, 1), "0.5")):
+        with pytest.raises(my.Error, match=f"the history of x .*has no value at {missing}, which `delayed"):
+            my.solve(of_table("linear", times), {tau: lag}, **{**known, "time": time})
+    assert my.solve(of_table("linear", times, "hold"), {tau: 3.0}, **known)["status"] == "success"
+    changing = my.model({x: -my.delayed(x, 1.5 + 2 * t)}, history={x: my.interpolate(t, times, times, outside="nan")})
+    assert my.solve(changing, **known)["status"] == "not_finite"
+    with pytest.raises(my.Error, match="outside is 'never'"):
+        my.interpolate(t, times, times, outside="never")
+
+
+def test_stops_where_kinks_of_a_table_arrive_end_steps_there():
+    times, values = np.array([-2, -1.3, -0.6, 0.0]), np.array([0, 1, -1, 1.0])
+    before, ends = {x: my.interpolate(t, times, values)}, my.stop((times[1:-1] + 1.7).tolist())
+    whole = np.interp(-1.7, times, values), np.interp(0, times, values)
+    wanted = whole[1] + np.trapezoid([whole[0], *values[1:]], [-1.7, *times[1:]])
+    call = dict(time=(0, 1.7), interpreted=True, rtol=1e-6, atol=1e-6)
+    across = my.solve(my.model({x: my.delayed(x, 1.7)}, history=before), **call)
+    exactly = my.solve(my.model({x: my.delayed(x, 1.7)}, history=before, stops=ends), **call)
+    assert across.report.rejected_steps > 10 and exactly.report.rejected_steps == 0
+    assert abs(across["x"][0] - wanted) > 1e-6
+    assert exactly["x"][0] == pytest.approx(wanted, abs=1e-12)
+
+
+def test_fixed_steps_keep_what_their_longest_lag_needs():
+    model = my.model({x: -my.delayed(x, tau) - my.delayed(x, 0.5)})
+
+    def kept(lag, domain=(0, 100), of=model, method="runge_kutta_4", **options):
+        return steps_to_keep(of, method, {"tau": np.asarray(lag)}, domain, my.Options(step=0.01, **options))
+
+    assert 3000 < kept([1.0, 30.0]) < 3050  # the longest of all instances, with steps at jumps
+    assert 500 < kept(30.0, (0, 5)) < 550 and 1500 < kept(30.0, (0, 5), phases=3) < 1550
+    assert kept(np.nan) == kept([-1.0, np.inf]) == kept(0.5) < 100
+    assert kept(1e7, (0, 1e7)) == 1048576
+    assert kept(1.0, history_steps=64) is kept(1.0, method="tsitouras_5") is None  # as it is told, or unknown
+    assert kept(1.0, of=my.model({x: my.delayed(x, tau * t)})) is None
+    assert kept(0.1, of=my.model({x: my.delayed(x, tau)}, stops=my.stop(1, do={x: 2}))) == 1024  # as actions jump
+    assert kept(1.0, of=my.model({x: my.delayed(x, tau)}, finalise={tau: 9.0})) is None
+    run = my.solve(my.model({x: -my.delayed(x, tau)}), {tau: [0.01, 0.0101, 0.05, 30.0]}, start={x: 1}, time=(0, 60),
+                   method="runge_kutta_4", step=0.01, interpreted=True)
+    assert run.report.failed == 0
+    assert run["x"][-1] == pytest.approx(1 - 60 + 30**2 / 2, abs=1e-9)
+    axes = my.grid({tau: my.linspace(0.5, 30, 3), sigma: [1.0, 29.0]})
+    both = my.model({x: -my.delayed(x, tau) - my.delayed(x, sigma)})
+    call = dict(start={x: 1}, time=(0, 40), method="runge_kutta_4", step=0.01, interpreted=True)
+    studied = my.study(both, axes, keep=[x], **call).run()
+    np.testing.assert_array_equal(studied["x_end"].ravel(), my.solve(both, axes, **call)["x"].ravel())
+    assert (studied["status"] == "success").all()
+    drawn = my.study(of_table("linear", np.array([-2.0, 0.0])), {tau: my.uniform(2.5, 3)}, draws=8,
+                     **{**call, "start": {}})
+    assert drawn.run().by_status == {"not_finite": 8}
+
+
 def test_a_state_may_begin_elsewhere_than_its_history_ends():
     """x' = x(t - 1), which was k t, and begins with 3."""
     model = my.model({x: my.delayed(x, 1)}, history={x: k * t})
@@ -382,7 +456,7 @@ def test_a_study_of_delays():
 # vanishes at the begin, so that steps are iterated.
 relay = my.model({x: y - 0.3 * x, y: 0}, events=my.event(my.delayed(x, tau) - y / 2, direction="rising", do={y: -y}),
                  after_step={y: my.where(my.delayed(x, tau) < -0.6, abs(y), y)})
-vanishing = my.model({x: -2 * my.delayed(x, k * t) * (1 - x * x) + 0.5 * y, y: -my.delayed(x, tau * (1 - my.exp(-t)))})
+vanishing = my.model({x: -2 * my.delayed(x, k * t) * (1 - x * x) + 0.5 * y, y: -my.delayed(x, tau * t / (1 + t))})
 in_short_rings = dict(start={x: 0.5, y: 1}, time=(0, 20), rtol=1e-6, atol=1e-6, maximum_step=1 / 16)
 
 
@@ -599,7 +673,6 @@ def test_what_a_model_with_delays_may_not_have_is_refused(make, said):
        f"which {method} does not take") for method in ("euler_maruyama", "sra1")),
     (lambda: my.study(delaying, {tau: 1.0}, start={x: 1}, time=(0, 1), keep=[x], method="milstein"),
      "which milstein does not take"),
-    (lambda: my.solve(delaying, {tau: 1.0}, start={x: 1}, time=(0, 1), interpreted=True), "cannot be interpreted"),
     (lambda: my.solve(my.model({x: -x}), start={x: 1}, time=(0, 1), history_steps=64), "history_steps is 64")])
 def test_what_takes_no_delays_says_so(call, said):
     with pytest.raises(my.Error, match=said):

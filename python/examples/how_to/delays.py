@@ -40,6 +40,15 @@ swing = np.ptp(near["x_sample"], axis=1)
 # end of snippet
 assert swing[0] < 1e-3 < 0.05 < swing[1], swing
 
+# snippet: table
+days = np.linspace(-20, 0, 41)
+measured = 1.2 - 0.2 * np.cos(0.3 * days)  # before the begin
+known = my.interpolate(my.time, days, measured, kind="cubic", outside="nan")
+since = my.solve(my.model({x: slope}, name="since", history={x: known}), {tau: [10, 17], beta: 0.2, gamma: 0.1, n: 10},
+                 time=(0, 100), samples=101)
+# end of snippet
+assert since.report.failed == 0 and np.all(since["x_sample"][:, 0] == measured[-1])
+
 # snippet: exponents
 with_tangent = my.with_tangents(mackey_glass, transient_phases=100)
 run = my.solve(with_tangent, {tau: [12, 17, 23], beta: 0.2, gamma: 0.1, n: 10}, time=(0, np.inf), phases=1500,

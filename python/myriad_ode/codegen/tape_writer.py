@@ -56,6 +56,7 @@ class Writer:
     def __init__(self, components: Components) -> None:
         self.place = components.place
         self.events = components.event_names
+        self.delayed: dict[Node, int] = {}  #: numbers of delayed values
         self.codes: list[int] = []
         self.values: list[float] = []
         self.registers: list[tuple[int, int, int, int]] = []
@@ -76,6 +77,8 @@ class Writer:
             self._emit(f"load_{name}", to)
         elif kind == "event_count":
             self._emit("load_event_count", to, self.events.index(name))
+        elif kind == "delayed":
+            self._emit("load_delayed", to, self.delayed[node])
         elif kind == "side":
             self._emit("load_state", to, self.events.index(name))
         elif kind == "waiting":

@@ -43,8 +43,6 @@ def library(model: AnyModel, components: Components, method: str) -> _core.Libra
         raise _refuse(model.not_interpreted)
     if model.noise is not None:
         raise _refuse("it has noise")
-    if model.delays:
-        raise _refuse("it has delays")
     if method not in methods:
         raise _refuse(f"the interpreter has the methods {', '.join(methods)} alone")
     if model.mass_matrix is not None:
@@ -56,6 +54,7 @@ def library(model: AnyModel, components: Components, method: str) -> _core.Libra
         raise _refuse(f"its actions that wait have {model.queue.values} values, and the interpreter "
                       f"{_core.tape_values} at the most")
     writer = Writer(components)
+    writer.delayed = {one.symbol: j for j, one in enumerate(model.delays)}
     results = [("store_result", c) for c in range(max(len(model.rhs), len(model.events)))]
     writer.function(model.rhs, results)
     writer.function([e.function for e in model.events], results)
@@ -68,6 +67,7 @@ def library(model: AnyModel, components: Components, method: str) -> _core.Libra
     _write_actions(writer, model)
     actions = [one.do for one in (*model.events, *model.stops, *model.triggers)]
     may_stop = any(t.value[0] == "action" for a in (model.after_step, *actions) for t, _ in a)
+    _write_past(writer, model)
     made = _tape(writer, model, lengths, entries)
     shared, shared_integers = (len(components.names[kind]) for kind in kinds.shared)
     return _core.Library(method, shared, shared_integers, may_stop, made)
@@ -93,6 +93,25 @@ def _write_actions(writer: Writer, model: RecordedModel) -> None:
     writer.series(map(edge, edges))
     writer.series(map(do, triggers))
     writer.series([value(one.priority) for one in triggers])
+
+
+def _write_past(writer: Writer, model: RecordedModel) -> None:
+    """The functions of delayed values: how long ago each is, and what it was before the begin."""
+
+    def value(root: Node | None) -> Callable[[], None]:
+        return lambda: writer.value(root)
+
+    writer.series([value(one.lag) for one in model.delays])
+    writer.series([value(model.history.get(one.symbol.value[1].state)) for one in model.delays])
+
+
+def _delays(model: RecordedModel) -> list[list[int]]:
+    """Of each delayed value: the number of its state, the first delayed value that is as long ago, and whether it is
+    the slope of the state."""
+    states = list(model.states)
+    first: dict[tuple[int, bool], int] = {}
+    return [[states.index(one.state), first.setdefault((id(one.lag), one.is_slope), j), int(one.is_slope)]
+            for j, one in enumerate(model.delays)]
 
 
 def _time_of(one: Stop) -> Node:
@@ -124,10 +143,11 @@ def _tape(writer: Writer, model: RecordedModel, lengths: list[int], entries: lis
     where_waiting = [0, 0, 0, 0] if queue is None else [
         place[queue.accessories[0]][1], place[queue.integers[0]][1], queue.capacity, queue.values]
     return _core.Tape(writer.functions, writer.codes, writer.values, writer.registers, lengths, entries,
-                      is_autonomous(model),
+                      is_autonomous(model) and not model.delays,
                       [i for i, e in enumerate(edges) if not e.initial_value],
                       [i for i, e in enumerate(edges) if not e.persistent], where_waiting,
-                      *((-1, -1) if queue is None else (len(model.stops), queue.seed)))
+                      *((-1, -1) if queue is None else (len(model.stops), queue.seed)),
+                      _delays(model), all(one.is_constant for one in model.delays))
 
 
 def give_model(library: _core.Library, model: AnyModel, components: Components, method: str) -> None:
@@ -144,7 +164,7 @@ def give_model(library: _core.Library, model: AnyModel, components: Components, 
         return
     for _ in range(5):  # no hooks
         writer.function([], [])
-    for _ in range(7):
+    for _ in range(9):
         writer.series([])
     mass = [] if model.mass_matrix is None or model.initialise else model.mass_matrix.ravel().tolist()
     library.give_model(_tape(writer, model, lengths, []), method, mass)

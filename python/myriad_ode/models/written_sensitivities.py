@@ -24,6 +24,8 @@ def written_out(model: WithSensitivities) -> RecordedModel | str:
     hooks = own.initialise or own.after_step or own.finalise
     if hooks or own.events or own.stops or own.triggers or names_of(own)["accessory"]:
         return "it has sensitivities, and events, stops, triggers, hooks or accessories"
+    if own.delays:
+        return "it has sensitivities, and delays"
     states = [sym.symbol("state", name) for name in own.states]
     made = own.changeable()
     made.units_of_states = None

@@ -121,7 +121,7 @@ class Options:
     noise_step: cells of these paths: steps that are a multiple of one, or a number of 65536ths of one, follow the same
         path; 0: the step (in [0, inf), in the model's unit of time)
     history_steps: steps of the past that are kept of each instance of a model with delays; 0: 256 adaptive steps, 1024
-        fixed ones (in [0, 1048576], in steps)
+        fixed ones, or in Python those of the longest constant lag (in [0, 1048576], in steps)
     events: how events are detected: one entry for each; none: defaults for all
     sub_samples: points per step at which event functions are evaluated, and with two or more also where they turn: what
         crosses zero and comes back within a step is found (in [1, 10000])

@@ -36,6 +36,7 @@ from ..sweeps.sweep import Sweep, with_paths
 from .core_options import finish_options, longest_step, make_options, options_of, takes_options
 from .gather import fill, gather, given_values, refuse_backwards
 from .options import Options, SolveArguments
+from .past import refuse_short_tables, steps_to_keep
 from .progress import ProgressDisplay
 from .sensitivity_options import start_derivatives, with_derivatives
 
@@ -91,6 +92,9 @@ class Call:
         if self.method in fixed_step and options.step is None:
             raise Error(f"{self.method} takes fixed steps: give step=")
         self.core_options, self.recorded, self.sampled = make_options(self.components, self.count, options)
+        refuse_short_tables(self.model, self.given, self.domain[0])
+        if (kept := steps_to_keep(self.model, self.method, self.given, self.domain, options)) is not None:
+            self.core_options.history_steps = kept
 
     def prepare(self, devices: Sequence[str], interpreted: bool | None) -> None:
         """Gets the kernels."""

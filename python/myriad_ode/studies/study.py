@@ -36,6 +36,7 @@ from ..results.report import Interrupted
 from ..solving.core_options import finish_options, longest_step, make_options, options_of, takes_options
 from ..solving.gather import ends_of, full_name, gather_axes, refuse_backwards, refuse_missing, refuse_shared
 from ..solving.options import Options, StudyArguments
+from ..solving.past import refuse_short_tables, steps_to_keep, values_of_axes
 from ..solving.progress import ProgressDisplay
 from ..sweeps.inputs import by_name, only, path_text, real, text, whole
 from ..sweeps.sweep import Sweep
@@ -114,9 +115,13 @@ class Study:
                 list(components.tables.values()), model.generator,
                 "float64" if precision == "double" else "float32", model.name or "model",
                 method_type(chosen, control, samples is not None).replace("myriad::", ""))
-            made.options(core_options)
             refuse_backwards(model, *_known_ends(time))
-            self._set_instances(made, components, sweep, start, time, draws is not None or paths is not None)
+            values = self._set_instances(made, components, sweep, start, time, draws is not None or paths is not None)
+            domain = values.get("t_begin"), values.get("t_end")
+            refuse_short_tables(model, values, domain[0])
+            if (kept := steps_to_keep(model, chosen, values, domain, options)) is not None:
+                core_options.history_steps = kept
+            made.options(core_options)
             self._looks_at_domains = bool(samples is not None or options.phase_length or options.carry_on)
             if draws is not None:
                 made.repeat(whole(draws, "draws", 1 << 62), "draw")
@@ -148,8 +153,9 @@ class Study:
             made.note(f"user.{key}", text(value, f"the note '{key}'"))
 
     def _set_instances(self, made: _core.Study, components: Components, sweep: Sweep | ByComponent | None,
-                       start: ByComponent | None, time: tuple[Any, Any] | None, repeated: bool) -> None:
-        """Axes, random values and values for all instances."""
+                       start: ByComponent | None, time: tuple[Any, Any] | None, repeated: bool) -> dict[str, Any]:
+        """Axes, random values and values for all instances. Returns those that are known, by name, each axis along a
+        dimension of its own."""
         axes, constants = gather_axes(components, sweep, start, time)
         varying = [*(name for axis in axes for name in axis),
                    *(name for name, value in constants.items() if isinstance(value, Random))]
@@ -161,7 +167,8 @@ class Study:
         if components.generated and not axes and not repeated:
             raise Error("the model generates its instances, and nothing says how many: give draws=")
         self._own_domains = not {"t_begin", "t_end"}.isdisjoint(varying)
-        for name, value in self._defaults(components, constants, varying).items():
+        defaults = self._defaults(components, constants, varying)
+        for name, value in defaults.items():
             if name not in given:
                 made.set(full_name(components, name), value)
         for axis in axes:
@@ -175,6 +182,8 @@ class Study:
                 made.axis(name, value.core())
             else:
                 made.set(name, float(value))
+        known = {**defaults, **values_of_axes(axes, constants)}
+        return {name: value for name, value in known.items() if name not in components.generated}
 
     @staticmethod
     def _set_axis(made: _core.Study, axis: Mapping[str, Any]) -> None:

@@ -9,7 +9,8 @@ import numpy as np
 
 from ..base.errors import Error, at, refuse_masked, users_line
 from .expression import as_number, continuous, make, to_real
-from .functions import maximum, minimum
+from .folding import nan
+from .functions import maximum, minimum, where
 from .symbols import check_name
 from .table import Table
 
@@ -21,17 +22,19 @@ if TYPE_CHECKING:
 
 __all__ = ["interpolate"]
 
-_outside = ("hold", "periodic", "extrapolate")
+_outside = ("hold", "periodic", "extrapolate", "nan")
 
 
 def interpolate(t: Operand, times: npt.ArrayLike, values: npt.ArrayLike, kind: Literal["linear", "cubic"] = "linear",
-                outside: Literal["hold", "periodic", "extrapolate"] = "hold", name: str = "forcing") -> Expression:
+                outside: Literal["hold", "periodic", "extrapolate", "nan"] = "hold",
+                name: str = "forcing") -> Expression:
     """The value at t, any expression, of data that are known at increasing times.
 
     kind     "linear", as numpy.interp, or "cubic", the spline with continuous second derivative whose first and last
              two pieces are one polynomial each, as scipy.interpolate.CubicSpline; periodic data have a periodic spline
     outside  "hold": the first and last value beyond the ends; "periodic": the data repeat, their first and last value
-             being equal; "extrapolate": the first and last piece go on
+             being equal; "extrapolate": the first and last piece go on; "nan": no value, so that an instance that reads
+             one ends as `not_finite`
     name     of the table; give each of several data of a model its own
 
     Evenly spaced times are found by their number, others by bisection. A linear interpolation has kinks at its times,
@@ -60,9 +63,10 @@ def interpolate(t: Operand, times: npt.ArrayLike, values: npt.ArrayLike, kind: L
     knots = times[:0] if even else times
     table = Table(check_name(name, "a table"), np.concatenate([head, knots, pieces.ravel()]))
     begin, end, period, step, per_step = (table[i] for i in range(5))
+    is_inside = (x >= begin) & (x <= end)
     if periodic:
         x = x - period * make("floor", ((x - begin) / period,), continuous)
-    elif outside == "hold":
+    elif outside != "extrapolate":
         x = minimum(maximum(x, begin), end)
     if even:
         row = minimum(maximum(make("floor", ((x - begin) * per_step,), continuous), 0.0), float(rows - 1))
@@ -74,7 +78,7 @@ def interpolate(t: Operand, times: npt.ArrayLike, values: npt.ArrayLike, kind: L
     result = make("lookup", (row,), (table, first, order, rows))
     for power in range(1, order):
         result = result * offset + make("lookup", (row,), (table, first + power, order, rows))
-    return result
+    return where(is_inside, result, nan) if outside == "nan" else result
 
 
 def _data(times: npt.ArrayLike, values: npt.ArrayLike, line: str) -> tuple[Array, Array]:

@@ -12,6 +12,7 @@ import numpy as np
 from ..base.errors import Error, at, refuse_masked, users_line
 from .expression import as_number, make, to_real
 from .numbers import as_numbers
+from .node import walk
 from .symbols import check_name
 
 if TYPE_CHECKING:
@@ -112,6 +113,11 @@ class Table:
     def __rmatmul__(self, vector: Any) -> NoReturn:
         raise Error(f"a vector is multiplied from the left by the table {self.name}{at(users_line())}: make a table of "
                     "the transposed array, and write table @ vector")
+
+
+def tables_in(expression: Node) -> list[Table]:
+    """The tables that an expression reads, each once."""
+    return tables_of(walk([expression]))
 
 
 def tables_of(nodes: Iterable[Node]) -> list[Table]:

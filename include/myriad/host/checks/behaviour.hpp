@@ -63,7 +63,7 @@ public:
         const R t = data_.t;
         if constexpr (has_delays<Model>) {
             detail::recall<Model>(t, data_.y, p);
-            for (int j = 0; j < n_delayed<Model>; ++j)
+            for (int j = 0; j < MYRIAD_LENGTH(n_delayed<Model>); ++j)
                 take(model_function::rhs, 0, shown_kind::result, j, detail::lag_of<Model>(j, t, data_.y, p));
         }
         take_all(model_function::rhs, Model::template rhs<R>(t, data_.y, p), MYRIAD_LENGTH(n_state<Model>),

@@ -2,8 +2,10 @@
 // The inputs of a model's functions for one instance, for host code that calls them.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 
 #include "myriad/kernel/model/lane.hpp"
 #include "myriad/kernel/model/recall.hpp"
@@ -27,23 +29,24 @@ R begin_of(const argument_head<R>& a, std::int64_t i) {
 template <class Model, class R>
 void put_constant_past(inputs<Model, R>& p, const argument_head<R>& a, std::int64_t i) {
     if constexpr (has_delays<Model>) {
-        constexpr int slots = 8, steps = slots * history_fields(n_kept<Model>, 0);
-        thread_local R ring[steps + n_kept<Model> + 2] = {};  // the inputs are used at once
+        constexpr int slots = 8, steps = slots * history_fields(0, 0);
+        thread_local std::unique_ptr<R[]> ring;  // the inputs are used at once
+        ring.reset(new R[static_cast<std::size_t>(steps + MYRIAD_LENGTH(n_kept<Model>) + 2)]());
         detail::for_each_kept_state<Model>([&](auto at, int state) { ring[steps + at] = a.state[state * a.size + i]; });
         p.past = {};  // without steps
         p.later = {};
-        p.past.ring = ring;
+        p.past.ring = ring.get();
         p.past.stride = 1;
         p.past.slots = slots;
         p.past.terms = 1;  // which is read, and not used
-        p.past.row = history_fields(n_kept<Model>, 0);
+        p.past.row = history_fields(0, 0);
         p.past.reached = std::numeric_limits<R>::infinity();
         p.past.begin_of(0) = std::numeric_limits<R>::infinity();
-        for (int g = 0; g < n_lag<Model>; ++g) {
+        for (int g = 0; g < MYRIAD_LENGTH(n_lag<Model>); ++g) {
             p.past.lane[0].from[g] = -1;
             p.past.lane[0].before[g] = p.past.lane[0].none;
         }
-        for (int j = 0; j < n_delayed<Model>; ++j) p.past.lane[0].seen[j].number = -1;
+        for (int j = 0; j < MYRIAD_LENGTH(n_delayed<Model>); ++j) p.past.lane[0].seen[j].number = -1;
         p.past.lane[0].forget();
         detail::recall<Model>(detail::begin_of(a, i), detail::state_of<Model>(a, i), p);
     }

@@ -240,7 +240,7 @@ struct option_table<options> {
                      "give the longest of the steps that are to follow one path, or 0 for the step"},
         option_entry{"history_steps", &o::history_steps, results, "steps", from_to(0, 1048576),
                      "steps of the past that are kept of each instance of a model with delays; 0: 256 adaptive steps, "
-                     "1024 fixed ones",
+                     "1024 fixed ones, or in Python those of the longest constant lag",
                      "give the steps over the longest delay and a few more, or 0"},
         option_entry{"events", &o::events, results,
                      "how events are detected: one entry for each; none: defaults for all"},

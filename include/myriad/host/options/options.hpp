@@ -150,7 +150,8 @@ struct options {
     double noise_step = 0;
 
     /// Steps of the past that are kept of each instance of a model with delays, rounded up to a power of two: those
-    /// over its longest delay, and a few. 0: 256 adaptive steps, 1024 fixed ones.
+    /// over its longest delay, and a few. 0: 256 adaptive steps, 1024 fixed ones, or in Python those of the
+    /// longest constant lag.
     std::int64_t history_steps = 0;
 
     std::vector<event_options> events = {};  ///< one for each event, in the model's order; empty: defaults for all

@@ -22,13 +22,13 @@ struct table_loop {
         }
     }
     /// begin <= i < end
-    template <int begin, int end, class F>
+    template <int begin, extent end, class F>
     static MYRIAD_FUNCTION void range(F&& f) {
         if constexpr (written_out) {
-            static_for<begin, end>(f);
+            static_for<begin, MYRIAD_LENGTH(end)>(f);
         } else {
             MYRIAD_ROLLED
-            for (int i = begin; i < end; ++i) f(i);
+            for (int i = begin; i < MYRIAD_LENGTH(end); ++i) f(i);
         }
     }
     /// From end - 1 down to begin.

@@ -22,7 +22,7 @@ template <class Model>
 MYRIAD_FUNCTION int highest_jump(int order) {
     std::int64_t jumps = 1;
     for (int k = 1; k <= order; ++k) {
-        jumps = jumps * (n_lag<whole_of<Model>> + k) / k;
+        jumps = jumps * (MYRIAD_LENGTH(n_lag<whole_of<Model>>) + k) / k;
         if (jumps > (k > 2 ? most_jumps_of_one : most_jumps_to_second) && k > 1) return k - 1;
     }
     return order;
@@ -34,8 +34,17 @@ struct breaking_points {
     using mask = mask_of<S>;
 
     using list_type = jump_list<Model, Method, S>;
-    static constexpr bool knows_arrivals = list_type::knows_arrivals, tracks = list_type::tracks;
-    static constexpr int highest = highest_jump<Model>(Method::order);
+    /// Whether it may be that steps have to be taken again up to where a jump arrives: `locate`.
+    static constexpr bool may_locate = is_adaptive<Method> && !has_constant_lags<Model, R>;
+    static MYRIAD_FUNCTION bool knows_arrivals() { return list_type::knows_arrivals(); }
+    static MYRIAD_FUNCTION int highest() {
+        if constexpr (gives_tables_of_past<Model>) {
+            return detail::highest_jump<Model>(Method::order);
+        } else {
+            constexpr int known = detail::highest_jump<Model>(Method::order);
+            return known;
+        }
+    }
 
     const kernel_arguments<Model, R>& args;
     integration_state<Model, Method, S>& s;
@@ -84,7 +93,7 @@ struct breaking_points {
             s.data.past.for_each_kept([&](auto at, int state) MYRIAD_LAMBDA {
                 initial[at * s.data.past.stride] = get_lane(s.data.y[state], i);
             });
-            const int level = has_history<Model> ? 0 : 1;
+            const int level = gives_any_history<Model>() ? 0 : 1;
             list().mark(i, level, level);
         } else {
             if (moved != R(0)) move_past(i, moved);
@@ -108,7 +117,7 @@ struct breaking_points {
 
     /// Lanes in which a jump of the past may have arrived.
     MYRIAD_FUNCTION mask due(const mask& accepted) const {
-        if constexpr (knows_arrivals) {
+        if (knows_arrivals()) {
             mask come = mask(false);
             for_each_lane(accepted, [&](int i) MYRIAD_LAMBDA {
                 const R t = get_lane(s.data.t, i);
@@ -139,7 +148,7 @@ struct breaking_points {
             });
         }
         level = team_of_lags<Model>::smallest(level);
-        if (level <= highest) list().mark(i, level, own);
+        if (level <= highest()) list().mark(i, level, own);
         return level;
     }
 
@@ -149,6 +158,7 @@ struct breaking_points {
     MYRIAD_FUNCTION mask locate(const accepted_step<Model, Method, S>& seen) const {
         const auto& y1 = seen.trial.y;
         mask crossed = mask(false);
+        if (knows_arrivals()) return crossed;
         detail::for_each_lag<Model>([&](auto g, auto j) MYRIAD_LAMBDA {
             const S beyond = seen_beyond_jump(g, j, seen.t1, y1);
             crossed = crossed | (seen.accepted & (beyond > list_type::instant(s.h)));
@@ -233,10 +243,10 @@ private:
     /// Time runs forwards, lags are numbers from zero on, and no fixed step is longer than one that is constant.
     MYRIAD_FUNCTION bool lags_are_valid(int i) const {
         bool valid = get_lane(s.data.t_end, i) >= get_lane(s.data.t, i);
-        const R least = is_adaptive<Method> || !knows_arrivals ? R(0) : args.step * R(1 - 1e-6);
+        const R least = is_adaptive<Method> || !knows_arrivals() ? R(0) : args.step * R(1 - 1e-6);
         detail::for_each_lag<Model>([&](auto, auto j) MYRIAD_LAMBDA {
             const R ago = list().lag(i, j);
-            valid = valid && ago >= least && (ago > R(0) || !knows_arrivals);
+            valid = valid && ago >= least && (ago > R(0) || !knows_arrivals());
         });
         return team_of_lags<Model>::all(valid);
     }

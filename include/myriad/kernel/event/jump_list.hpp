@@ -15,9 +15,10 @@ struct jump_list {
 
     /// Whether the times at which jumps arrive are known in advance; and whether steps end there, which fixed ones do
     /// only then.
-    static constexpr bool knows_arrivals = has_constant_lags<Model, R>, tracks = knows_arrivals || is_adaptive<Method>;
+    static MYRIAD_FUNCTION bool knows_arrivals() { return detail::lags_are_constant<Model, R>(); }
+    static MYRIAD_FUNCTION bool tracks() { return is_adaptive<Method> || knows_arrivals(); }
     static constexpr bool has_neighbours = jump_numbers<Model> != 0;
-    static_assert(tracks || !has_neighbours,
+    static_assert(is_adaptive<Method> || has_constant_lags<Model, R> || !has_neighbours,
                   "tangents and sensitivities of a model whose lags depend on time or state need an adaptive method, "
                   "whose steps end where jumps of the past arrive");
 
@@ -30,7 +31,7 @@ struct jump_list {
     /// Whether the next jump of lane i by lag g, which delayed value j has, has arrived.
     MYRIAD_FUNCTION bool has_arrived(int i, int g, int j) const {
         const R t = get_lane(s.data.t, i);
-        if constexpr (knows_arrivals) {
+        if (knows_arrivals()) {
             return has_come(s.breaks.arrival[i][g], t);
         } else {
             if (s.breaks.next[i][g] >= s.breaks.listed[i]) return false;
@@ -65,7 +66,7 @@ struct jump_list {
     /// The next step begins at a jump of the derivative of that order: a step of length zero lies before it.
     MYRIAD_FUNCTION void mark(int i, int level, [[maybe_unused]] int own = unknown_jump) const {
         past(i).resumes = true;
-        if constexpr (!tracks) return;
+        if (!tracks()) return;
         std::int32_t& listed = s.breaks.listed[i];
         if constexpr (has_neighbours) {
             if (own == unknown_jump) own = level > 0 ? level : differs_from_past(i, Model::n_original) ? 0 : 1;
@@ -96,9 +97,9 @@ struct jump_list {
         const bool one_before = number > 0 && s.breaks.listed[i] - number < args.history.slots;
         s.breaks.next[i][g] = number;
         past(i).forget_lag(g);
-        s.breaks.arrival[i][g] = knows_arrivals && there ? arrival_of(i, j, number) : infinity_of<R>;
+        s.breaks.arrival[i][g] = knows_arrivals() && there ? arrival_of(i, j, number) : infinity_of<R>;
         past(i).before[g] = there ? step_of(i, number) : lane_past<Model, R>::none;
-        past(i).from[g] = knows_arrivals && one_before ? step_of(i, number - 1) + 1 : -1;
+        past(i).from[g] = knows_arrivals() && one_before ? step_of(i, number - 1) + 1 : -1;
     }
     /// Finds the next jump of each lag in lane i.
     MYRIAD_FUNCTION void find_next(int i) const {
@@ -106,7 +107,7 @@ struct jump_list {
         detail::for_each_delayed<Model>([&](auto j) MYRIAD_LAMBDA { past(i).seen[j].number = past(i).steps - 1; });
         past(i).forget();
         detail::for_each_lag<Model>([&](auto g, auto j) MYRIAD_LAMBDA {
-            if constexpr (tracks) {
+            if (tracks()) {
                 const std::int32_t listed = s.breaks.listed[i], oldest = listed - args.history.slots;
                 std::int32_t number = oldest > 0 ? oldest : 0;
                 const auto is_over = [&](std::int32_t at) MYRIAD_LAMBDA {
@@ -123,7 +124,7 @@ struct jump_list {
         });
     }
     /// Whether the state, or the first so many states, are not those at the end of the last step.
-    MYRIAD_FUNCTION bool differs_from_past(int i, int first = n_state<Model>) const {
+    MYRIAD_FUNCTION bool differs_from_past(int i, int first = MYRIAD_LENGTH(n_state<Model>)) const {
         past_view<Model, S>& all = s.data.past;
         const bool by_slopes = all.terms == 2;
         R* const step = all.step_of(i, past(i).steps - (by_slopes ? 0 : 1));

@@ -189,6 +189,7 @@ struct integrator {
     /// The event functions at the end of the trial. Those that read the past within it see the trial's own interpolant.
     MYRIAD_FUNCTION vec<S, m> events_at_end(const trial_type& trial) {
         if constexpr (has_delays<Model> && is_adaptive<Method>) {
+            if (MYRIAD_LENGTH(m) == 0) return {};  // of an interpreted model
             const mask known = detail::past_is_known(s.data);
             const vec<S, m> g = detail::evaluate_events<Model>(end_time(), trial.y, s.data);
             const mask open = s.running() & known & !detail::past_is_known(s.data);
@@ -256,8 +257,7 @@ struct integrator {
 private:
     static constexpr bool locates_breaks = [] {
         if constexpr (has_delays<Model>) {
-            using breaks = breaking_points<Model, Method, S>;
-            return breaks::tracks && !breaks::knows_arrivals;
+            return breaking_points<Model, Method, S>::may_locate;
         } else {
             return false;
         }

@@ -27,7 +27,7 @@ struct trial_iteration {
         if (!MYRIAD_UNLIKELY(any(open))) return false;
         if (turns > 0) {
             mask same = mask(true);
-            for (int c = 0; c < n; ++c) {
+            for (int c = 0; c < MYRIAD_LENGTH(n); ++c) {
                 const S scale = fma(S(detail::relative_tolerance_of(args, c)), abs(trial.y[c]),
                                     S(detail::absolute_tolerance_of(args, c)));
                 same = same & (abs(trial.y[c] - before[c]) <= S(R(converged)) * scale);

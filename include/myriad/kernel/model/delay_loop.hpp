@@ -23,14 +23,24 @@ template <class Model>
 MYRIAD_CONSTANT_MEMORY auto kept_tables_of_past = make_tables_of_past<Model>();
 template <class Model, auto table, class I>
 MYRIAD_FUNCTION auto in_tables_of_past(I i) {
-    if constexpr (std::is_same_v<I, int>) {
+    if constexpr (gives_tables_of_past<Model>) {
+        return (Model::tables_of_past().*table)[i];
+    } else if constexpr (std::is_same_v<I, int>) {
         return (kept_tables_of_past<Model>.*table)[i];
     } else {
         return constant_index<(tables_of_past_of<Model>.*table)[I::value]>{};
     }
 }
 template <class Model>
-using tables_type_of_past = std::remove_cv_t<decltype(tables_of_past_of<Model>)>;
+constexpr auto name_tables_of_past() {
+    if constexpr (gives_tables_of_past<Model>) {
+        return std::type_identity<std::remove_cvref_t<decltype(Model::tables_of_past())>>();
+    } else {
+        return std::type_identity<std::remove_cv_t<decltype(tables_of_past_of<Model>)>>();
+    }
+}
+template <class Model>
+using tables_type_of_past = typename decltype(name_tables_of_past<Model>())::type;
 /// Of a team's whole model: where each state is among those kept.
 template <class Whole>
 MYRIAD_CONSTANT_MEMORY auto kept_places_of_states = make_places_of_states<Whole>();

@@ -175,7 +175,7 @@ constexpr bool check_hooks(const vec<R, n_state<Model>>* y = nullptr, const inpu
                           "stop_time(int stop, int number, const auto& p)`, the time of the stop of that number, and "
                           "public")
     }
-    if constexpr (has_delays<Model> && has_delayed_state<Model>) {
+    if constexpr (has_delays<Model> && has_delayed_state<Model> && !gives_tables_of_past<Model>) {
         static_assert(states_of_delays_exist<whole_of<Model>>(), "delayed_state names no state of the model");
         static_assert(same_lags_are_first<Model>(),
                       "same_lag has a wrong result: it is the first of the delayed values with the lag of that one");

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "myriad/kernel/core/vec.hpp"
 #include "myriad/kernel/model/concepts.hpp"
 #include "myriad/kernel/model/delay_loop.hpp"
 #include "myriad/kernel/model/past_layout.hpp"
@@ -24,6 +25,16 @@ template <class Model, class S>
 concept has_constant_lags = has_delays<Model> && requires(const inputs<Model, S>& p) {
     Model::template lag<S>(0, p);
 };
+
+/// The same, where it is only known when the model runs.
+template <class Model, class R>
+MYRIAD_FUNCTION bool lags_are_constant() {
+    if constexpr (gives_tables_of_past<Model>) {
+        return Model::lags_are_constant();
+    } else {
+        return has_constant_lags<Model, R>;
+    }
+}
 
 /// Why a lookup of a trial step is not to be believed.
 struct past_trouble {
@@ -68,17 +79,17 @@ struct places_of_thread<Model, true> {
 /// The past of one lane. Steps are numbered from the beginning; step k is in slot k modulo their number.
 template <class Model, class R>
 struct lane_past : places_of_thread<Model> {
-    static constexpr int values = n_delayed<Model>, lags = n_lag<Model>;
+    static constexpr auto values = n_delayed<Model>, lags = n_lag<Model>;
     static constexpr std::int32_t none = std::numeric_limits<std::int32_t>::max();
 
     std::int64_t instance;
-    std::int32_t steps;         // stored so far
-    bool begins;                // the next begins anew: what it begins with is not the end of the one before
-    bool resumes;               // it may: a phase has begun, or a hook has changed something
-    bool has_trial;             // the one after them holds the trial that is iterated
-    std::int32_t from[lags];    // of each lag: the first step that may be seen now; -1: what was before
-    std::int32_t before[lags];  // and the first that must not be seen yet, a jump; or none
-    mutable seen_step<R> seen[values];
+    std::int32_t steps;              // stored so far
+    bool begins;                     // the next begins anew: what it begins with is not the end of the one before
+    bool resumes;                    // it may: a phase has begun, or a hook has changed something
+    bool has_trial;                  // the one after them holds the trial that is iterated
+    vec<std::int32_t, lags> from;    // of each lag: the first step that may be seen now; -1: what was before
+    vec<std::int32_t, lags> before;  // and the first that must not be seen yet, a jump; or none
+    mutable vec<seen_step<R>, values> seen;
     mutable R recalled;  // the time of the functions that saw all values last, if lags are constant; or NaN
     mutable std::uint8_t trouble;
 

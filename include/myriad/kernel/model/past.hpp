@@ -34,12 +34,12 @@ struct past_view {
     }
     MYRIAD_FUNCTION R* initial_of(int i) const { return ring + slots * row + lane[i].instance; }
     /// How far the past was moved, by phases whose time begins again.
-    MYRIAD_FUNCTION R& moved_of(int i) const { return initial_of(i)[n_kept<Model> * stride]; }
+    MYRIAD_FUNCTION R& moved_of(int i) const { return initial_of(i)[MYRIAD_LENGTH(n_kept<Model>) * stride]; }
     /// The time at which it began, moved likewise.
-    MYRIAD_FUNCTION R& begin_of(int i) const { return initial_of(i)[(n_kept<Model> + 1) * stride]; }
+    MYRIAD_FUNCTION R& begin_of(int i) const { return initial_of(i)[(MYRIAD_LENGTH(n_kept<Model>) + 1) * stride]; }
     /// Number c of an entry of the list of jumps: breaking_points.hpp.
     MYRIAD_FUNCTION R& jump_number(int i, std::int32_t number, int c) const {
-        const std::int64_t place = n_kept<Model> + 2 + (number & (slots - 1)) * jump_numbers<Model> + c;
+        const std::int64_t place = MYRIAD_LENGTH(n_kept<Model>) + 2 + (number & (slots - 1)) * jump_numbers<Model> + c;
         return initial_of(i)[place * stride];
     }
     /// The time at which step k begins; that of the step after the last is written, too.
@@ -204,7 +204,7 @@ private:
         if (k < 0) return see_initial(j, i, seen);
         R length = at.end - at.start, reach = length;
         bool is_short = false;
-        if constexpr (!has_constant_lags<Model, R>) {
+        if (!detail::lags_are_constant<Model, R>()) {
             // Before a jump a step is continued beyond its end: the last that is not short, as the polynomial of a
             // short one is, farther away, one of roundings. Jumps lie in steps without length.
             const auto find_short = [&]() MYRIAD_LAMBDA {
@@ -266,7 +266,7 @@ MYRIAD_FUNCTION void look_back(past_view<Model, S>& past, const Arguments& args,
     past.stride = args.size;
     past.slots = args.history.slots;
     past.terms = history_terms<Method>;
-    past.row = history_fields(n_kept<Model>, history_terms<Method>) * args.size;
+    past.row = history_fields(MYRIAD_LENGTH(n_kept<Model>), history_terms<Method>) * args.size;
     past.lane[i].instance = index;
     past.lane[i].steps = index >= 0 ? args.history.place[index] : 0;
     past.lane[i].begins = false;

@@ -24,6 +24,12 @@ MYRIAD_FUNCTION bool is_delayed_slope(int j) {
         return false;
     }
 }
+/// Whether what is known of a model's delayed values is known when it runs alone: one that is interpreted gives the
+/// tables of what is kept, and whether its lags are constant, itself.
+template <class Model>
+concept gives_tables_of_past = requires {
+    Model::tables_of_past();
+};
 /// Whether each delayed value is of a state.
 template <class Model>
 MYRIAD_FUNCTION bool states_of_delays_exist() {
@@ -82,22 +88,26 @@ template <class Model>
 inline constexpr bool knows_past = has_delays<Model>&& has_delayed_state<Model>;
 /// Number of states whose past is kept. A part of a model has a place for each of the whole's.
 template <class Model>
-inline constexpr int n_kept = [] {
-    if constexpr (team_size<Model> != 1) {
+inline constexpr extent n_kept = [] {
+    if constexpr (gives_tables_of_past<Model>) {
+        return Model::n_kept;
+    } else if constexpr (team_size<Model> != 1) {
         return n_kept<whole_of<Model>>;
     } else if constexpr (knows_past<Model>) {
-        return place_states_of_delays<Model>([](int, int, bool) {});
+        return extent(place_states_of_delays<Model>([](int, int, bool) {}));
     } else {
-        return 0;
+        return extent(0);
     }
 }();
 /// Number of lags whose jumps arrive at different times; of a part of a model, those of its own delayed values.
 template <class Model>
-inline constexpr int n_lag = [] {
-    if constexpr (knows_past<Model>) {
-        return place_lags<Model>([](int, int, bool) {});
+inline constexpr extent n_lag = [] {
+    if constexpr (gives_tables_of_past<Model>) {
+        return Model::n_lag;
+    } else if constexpr (knows_past<Model>) {
+        return extent(place_lags<Model>([](int, int, bool) {}));
     } else {
-        return 0;
+        return extent(0);
     }
 }();
 /// The team whose threads have lags of their own; one thread where they have the same.

@@ -45,6 +45,15 @@ MYRIAD_FUNCTION bool gives_history([[maybe_unused]] int j) {
     }
 }
 
+/// Whether it gives that of any delayed value.
+template <class Model>
+MYRIAD_FUNCTION bool gives_any_history() {
+    bool any = false;
+    if constexpr (has_history<Model>)
+        detail::for_each_delayed<Model>([&](auto j) MYRIAD_LAMBDA { any = any || gives_history<Model>(j); });
+    return any;
+}
+
 /// Times at which the model's `history` is asked: its time does not begin again with a phase.
 template <class Model, class S>
 MYRIAD_FUNCTION S time_of_history(S time, const inputs<Model, S>& p) {
@@ -131,7 +140,7 @@ template <class Model, class S>
 MYRIAD_FUNCTION past_in_motion<Model, S> moving_past(const dual<S>& t, const vec<dual<S>, n_state<Model>>& y,
                                                      const inputs<Model, S>& p) {
     vec<S, n_state<Model>> at;
-    for (int c = 0; c < n_state<Model>; ++c) at[c] = y[c].value;
+    for (int c = 0; c < MYRIAD_LENGTH(n_state<Model>); ++c) at[c] = y[c].value;
     detail::recall<Model>(t.value, at, p);
     past_in_motion<Model, S> with{p, {}};
     detail::for_each_delayed<Model>([&](auto j) MYRIAD_LAMBDA {
