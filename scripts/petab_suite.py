@@ -110,6 +110,9 @@ def outcome_of(folder, file, options):
         recorded = pd.read_csv(folder / solution["simulation_files"][0], sep="\t")["simulation"].to_numpy(float)
         good = (abs(value - solution["llh"]) <= solution["tol_llh"]
                 and np.abs(ours.mean - recorded).max() <= solution["tol_simulations"])
+        if "unnorm_log_posterior" in solution:
+            loss = problem.likelihood(interpreted=True, **chosen).loss(list(problem.nominal.values()))
+            good = good and abs(loss + solution["unnorm_log_posterior"]) <= solution["tol_unnorm_log_posterior"]
         return "right" if good else "wrong", "", value, solution["llh"]
     recorded = sorted(folder.glob("simul*.tsv"))
     if options.roadrunner:

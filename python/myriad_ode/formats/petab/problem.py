@@ -188,8 +188,10 @@ class _Reader:
             self._fixed[name] = float(row["nominalValue"])
             self._made.fix(name, self._fixed[name])
             return
-        prior, (least, most) = read_prior(name, row)
-        least, most = max(least, float(row["lowerBound"])), min(most, float(row["upperBound"]))
+        of_version_2 = row.get("prior")  # what read_prior_2 gives, or None
+        prior, (least, most) = of_version_2 or read_prior(name, row)
+        least, most = (pick(end, float(row[f"{which}Bound"])) if np.isfinite(row[f"{which}Bound"]) else end
+                       for pick, which, end in ((max, "lower", least), (min, "upper", most)))
         self._free.append(Free(name, (least, most, *(() if row["parameterScale"] == "lin" else ("log",)))))
         self._set_to_free[self._made.set(name, "the table of parameters")] = len(self._free) - 1
         if prior is not None:
