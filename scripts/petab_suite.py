@@ -27,7 +27,7 @@ import yaml
 import myriad_ode as my
 from myriad_ode.base.errors import CannotInterpret
 from myriad_ode.formats.sbml.math import Refused
-from myriad_ode.inference.measurements import normal_loss
+from myriad_ode.inference.measurements import losses
 
 from sbml_suite import table
 
@@ -87,9 +87,8 @@ class Simulation:
 
     def log_likelihood(self, mean):
         """That of a simulation with the noise of this one, of what is no NaN of it."""
-        losses = [normal_loss(o.scale, self._experiment.measured[o.rows], mean[o.rows], self._deviation[o.rows])
-                  for o in self._experiment.observables]
-        return -sum(np.nansum(loss) for loss in losses)
+        return -sum(np.nansum(losses[o.distribution](o.scale, self._experiment.measured[o.rows], mean[o.rows],
+                                                     self._deviation[o.rows])) for o in self._experiment.observables)
 
 
 def outcome_of(folder, file, options):

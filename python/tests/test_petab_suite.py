@@ -52,9 +52,7 @@ def test_a_recorded_simulation_is_right_in_any_order_and_wrong_where_it_is_anoth
 
 
 def test_what_is_refused_is_told_so(folder):
-    write(folder, observables=table("""observableId observableFormula noiseFormula noiseDistribution
-seen scale*A noiseParameter1_seen normal
-logged log(A) 0.02 laplace"""))
+    write(folder, conditions=table("conditionId loss\nusual 1"))
     assert outcome(folder) == "refused"
 
 

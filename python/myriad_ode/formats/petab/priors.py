@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from ...base.errors import Error
 from ...inference import priors
 from ...inference.priors import LaplacePrior, NormalPrior, Prior, ScaledPrior, log_normal_prior
 from ..sbml.math import Refused
@@ -69,10 +68,7 @@ def read_prior_2(parameter: Any) -> tuple[Prior, tuple[float, float]]:
         return ScaledPrior(None, float(np.log(most - least)) if most - least < np.inf else 0.0), (least, most)
     if kind not in _of_version_2:
         raise Refused(f"{where}Distribution: {kind}; supported are {', '.join(['uniform', *_of_version_2])}")
-    try:
-        prior = _of_version_2[kind](*given)
-    except (TypeError, Error) as error:
-        raise Refused(f"{where}Parameters: {error}") from None
+    prior = _of_version_2[kind](*given)  # whose parameters petab has checked
     with np.errstate(all="ignore"):
         whole = parameter.model_copy(update={"lb": -np.inf, "ub": np.inf}).prior_dist
         within = float(whole.cdf(bounds[1]) - whole.cdf(bounds[0]))

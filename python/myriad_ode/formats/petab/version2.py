@@ -17,7 +17,8 @@ from .formulas import written
 from .periods import Period, Periods
 from .priors import read_prior_2
 
-_scales = {"normal": "lin", "log-normal": "log"}
+_noise = {"normal": ("normal", "lin"), "log-normal": ("normal", "log"), "laplace": ("laplace", "lin"),
+          "log-laplace": ("laplace", "log")}
 
 
 @dataclass
@@ -99,7 +100,7 @@ def _check(problem: Any) -> None:
 def _periods(problem: Any) -> dict[str, list[Period]]:
     """The periods of each experiment, in the order of time; and one of measurements without an experiment."""
     found = {e.id: [Period(float(p.time), {
-        c.target_id: written(c.target_value, f"the condition table, target {c.target_id}")
+        c.target_id: written(c.target_value)
         for c in problem.get_changes_for_period(p)}) for p in e.sorted_periods] for e in problem.experiments}
     if any(m.experiment_id is None for m in problem.measurements):
         found[""] = []
@@ -169,18 +170,18 @@ def _observables(problem: Any) -> Any:
     rows = []
     for o in problem.observables:
         kind = str(getattr(o.noise_distribution, "value", o.noise_distribution))
-        if kind not in _scales:
-            raise Refused(f"the observable table, row '{o.id}', column noiseDistribution: {kind}, whose likelihood is "
-                          "not smooth: use normal or log-normal")
+        if kind not in _noise:
+            raise Refused(f"the observable table, row '{o.id}', column noiseDistribution: {kind}; supported are "
+                          f"{', '.join(_noise)}")
+        distribution, scale = _noise[kind]
         names = {Symbol(str(p), real=True): Symbol(f"{what}Parameter{i}_{o.id}", real=True)
                  for what, of in (("observable", o.observable_placeholders), ("noise", o.noise_placeholders))
                  for i, p in enumerate(of or (), 1)}
         value = o.formula.subs(names)
         noise = o.noise_formula.subs(names).subs({Symbol(o.id, real=True): value})
-        where = f"the observable table, row '{o.id}'"
-        rows.append({"observableId": o.id, "observableFormula": written(value, where),
-                     "noiseFormula": written(noise, where), "noiseDistribution": "normal",
-                     "observableTransformation": _scales[kind]})
+        rows.append({"observableId": o.id, "observableFormula": written(value),
+                     "noiseFormula": written(noise), "noiseDistribution": distribution,
+                     "observableTransformation": scale})
     return pd.DataFrame(rows).set_index("observableId")
 
 
