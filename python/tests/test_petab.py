@@ -288,7 +288,7 @@ logged log(A,2) 0.02 normal lin""")
     expected = petabs_likelihood(tmp_path / "problem.yaml", problem, at, interpreted=True, **tight)
     assert likelihood.log_likelihood(at) == pytest.approx(expected, rel=1e-9)
     assert likelihood.loss(at) == pytest.approx(-expected, rel=1e-9)
-    np.testing.assert_allclose(likelihood.gradient(at), by_differences(likelihood.loss, at, 1e-5), rtol=1e-5)
+    np.testing.assert_allclose(likelihood.gradient(at), by_differences(likelihood.loss, at, 1e-5), rtol=1e-6)
 
 
 def test_a_fit_to_noise_of_laplaces_distribution_comes_near_the_median(tmp_path):

@@ -121,11 +121,11 @@ def normal_terms(scale: str, measured: Array, mean: Array, by_mean: Array, devia
 
 def laplace_terms(scale: str, measured: Array, median: Array, by_median: Array, width: Array, by_width: Array,
                   varies: Array) -> Terms:
-    """The same of measurements with Laplace's distribution, whose Fisher information is (dm / s)^2 + (ds / s)^2. In
-    the slope by the median a distance d, in units of the width, is taken as sqrt(d^2 + 1e-8)."""
+    """The same of measurements with Laplace's distribution, whose Fisher information is (dm / s)^2 + (ds / s)^2. At
+    its kink the slope by the median is zero."""
     on_scale, inner = scaled_by(scale, median)
     d = (on_scale - scaled_by(scale, measured)[0]) / width
-    residuals, jacobian = [d / np.sqrt(d**2 + 1e-8)], [by_median * (inner / width)[..., None]]
+    residuals, jacobian = [np.sign(d)], [by_median * (inner / width)[..., None]]
     if varies.any():
         residuals.append((1 - np.abs(d))[:, varies])
         jacobian.append((by_width / width[..., None])[:, varies])
