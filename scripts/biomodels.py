@@ -8,8 +8,8 @@ species, parameters and compartments. A model is "right" where all values are wi
 of the largest value of the variable; "refused" where Myriad says that it does not support something; "wrong" where a
 value is not within that even with smaller tolerances; "undecided" where libRoadRunner's own values with those differ by
 more than that from its first ones; "failed" where it ends otherwise; "neither" where libRoadRunner does so too; "time
-limit" where it takes too long; "no reference" where it is read and solved and libRoadRunner has no values; and "skipped"
-where it was not begun. Species without an initial value get 0, as libRoadRunner has it, and the line says so. Both
+limit" where it takes too long; "no reference" where it is solved and libRoadRunner has no values; and "skipped" where
+it was not begun. Species without an initial value get 0, as libRoadRunner has it, and the line says so. Both
 programs run in processes of their own. The exit status is 1 if a model is wrong or failed.
 """
 

@@ -115,9 +115,9 @@ def test_quotients_by_what_overflows_have_the_derivative_zero(expression):
 
 
 @pytest.mark.parametrize("expression", [
-    (1 + my.exp(x))**-1.5, (1 + my.exp(x))**(-y * y), my.powr(1 + my.exp(x), -y * y), my.tanh(my.exp(x)), my.tanh(-y * my.exp(x)),
-    my.atan(1 - my.exp2(2 * x)), my.rsqrt(1 + my.exp(x)), my.reciprocal(1 + my.cosh(x)), my.expm1(-my.exp(x)),
-    y * my.tanh(my.exp(x) + y)])
+    (1 + my.exp(x))**-1.5, (1 + my.exp(x))**(-y * y), my.powr(1 + my.exp(x), -y * y), my.tanh(my.exp(x)),
+    my.tanh(-y * my.exp(x)), my.atan(1 - my.exp2(2 * x)), my.rsqrt(1 + my.exp(x)), my.reciprocal(1 + my.cosh(x)),
+    my.expm1(-my.exp(x)), y * my.tanh(my.exp(x) + y)])
 @pytest.mark.parametrize("large", [800.0, 1e300])
 def test_what_becomes_flat_has_the_derivative_zero_where_its_argument_overflows(expression, large):
     there = {**at, x: large}
@@ -130,14 +130,15 @@ def test_what_becomes_flat_has_the_derivative_zero_where_its_argument_overflows(
         d = 1e-5
         ends = [float(evaluate([expression], {**at, x: 1.1 + s})[0]) for s in (d, -d)]
         for found in (row[0], transposed([expression], [constant(1.0)], [x])[0]):
-            assert float(evaluate([found], moderate)[0]) == pytest.approx((ends[0] - ends[1]) / (2 * d), rel=1e-6, abs=1e-9)
+            slope = (ends[0] - ends[1]) / (2 * d)
+            assert float(evaluate([found], moderate)[0]) == pytest.approx(slope, rel=1e-6, abs=1e-9)
 
 
 def test_what_does_not_become_flat_keeps_its_infinite_derivative():
     """Nor does a power that is not next to zero where its base's derivative overflows."""
     with np.errstate(over="ignore", invalid="ignore"):
         for expression in ((1 + my.exp(x))**-0.01, my.sqrt(1 + my.exp(x)), my.log(1 + my.exp(x))):
-            row, = directional([expression], [x], [constant(1000.0)]),
+            row, = directional([expression], [x], [constant(1000.0)])
             assert not np.isfinite(float(evaluate(row, {x: 709.0})[0]))
 
 

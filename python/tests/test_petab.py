@@ -279,7 +279,8 @@ def test_noise_of_laplaces_distribution_is_petabs(tmp_path, scale):
 seen scale*A noiseParameter1_seen laplace {scale}
 logged log(A,2) 0.02 normal lin""")
     parameters = TABLES["parameters"] + "error\tlog10\t0.01\t10\t1\t1\n"
-    rows = [row.rsplit("\t", 1)[0] + "\terror" if row.startswith("seen") else row for row in measurements(0.05).splitlines()]
+    rows = [row.rsplit("\t", 1)[0] + "\terror" if row.startswith("seen") else row
+            for row in measurements(0.05).splitlines()]
     problem = my.read_petab(write(tmp_path, observables=observables, parameters=parameters,
                                   measurements="\n".join(rows)))
     likelihood, at = problem.likelihood(interpreted=True, **tight), np.array([0.65, 2.3, 0.14])
@@ -295,8 +296,9 @@ def test_a_fit_to_noise_of_laplaces_distribution_comes_near_the_median(tmp_path)
     # of several values of one quantity, whose most likely width is their mean distance from it; at the kink it is slow
     values = np.array([0.7, 0.8, 1.0, 1.3, 2.9])
     problem = my.read_petab(write(
-        tmp_path, observables="observableId\tobservableFormula\tnoiseFormula\tnoiseDistribution\nlevel\tscale+0*A\twidth"
-        "\tlaplace\n", parameters=table("""parameterId parameterScale lowerBound upperBound nominalValue estimate
+        tmp_path, observables="observableId\tobservableFormula\tnoiseFormula\tnoiseDistribution\n"
+        "level\tscale+0*A\twidth\tlaplace\n", parameters=table("""
+parameterId parameterScale lowerBound upperBound nominalValue estimate
 scale lin 0.1 20 5 1
 width lin 0.01 9 1 1"""), measurements="observableId\tsimulationConditionId\ttime\tmeasurement\n" + "".join(
             f"level\tusual\t1\t{v}\n" for v in values)))

@@ -154,8 +154,8 @@ def repeated(ranges, changes, attributes='range="r" resetModel="true"', tasks='<
 
 
 def set_to(target, value="<ci> r </ci>"):
-    return (f'<setValue target="{target}" modelReference="m" range="r"><math xmlns="http://www.w3.org/1998/Math/MathML">'
-            f"{value}</math></setValue>")
+    return (f'<setValue target="{target}" modelReference="m" range="r">'
+            f'<math xmlns="http://www.w3.org/1998/Math/MathML">{value}</math></setValue>')
 
 
 EVEN = '<uniformRange id="r" start="0.1" end="0.4" numberOfPoints="3" type="linear"/>'
@@ -170,7 +170,8 @@ def test_a_repeated_task_is_a_sweep(folder, ranges, rates):
     found = courses(folder, sedml(model(), tasks=tasks))
     assert list(found) == ["many", "one"]
     run = found["many"].solve(rtol=1e-10, atol=1e-14)
-    np.testing.assert_allclose(run["S_sample"], 2 * np.exp(-np.outer(rates, found["many"].times)), rtol=1e-7, atol=1e-13)
+    np.testing.assert_allclose(run["S_sample"], 2 * np.exp(-np.outer(rates, found["many"].times)), rtol=1e-7,
+                               atol=1e-13)
     assert found["one"].solve().size == 1 and found["many"].solve({"k": [1.0, 2.0]}).size == 2
 
 
@@ -188,7 +189,8 @@ def test_a_repeated_task_sets_initial_values_and_several_things_at_once(folder):
     (repeated(EVEN, set_to(K, "<apply><times/><ci>r</ci><cn>2</cn></apply>")), "to a formula: only values of a range"),
     (repeated(EVEN, set_to(K.replace("'k'", "'q'"))), "sets 'q', which is no parameter and no species"),
     (repeated(EVEN, set_to(K, "<ci>q</ci>")), "to a formula: only values of a range"),
-    (repeated(EVEN, ""), "sets nothing"), (repeated(EVEN, set_to(K), 'range="q" resetModel="true"'), "sets nothing, or has"),
+    (repeated(EVEN, ""), "sets nothing"),
+    (repeated(EVEN, set_to(K), 'range="q" resetModel="true"'), "sets nothing, or has"),
     (repeated(EVEN + FEW.replace("<value>4</value>", ""), set_to(K, "<ci>s</ci>")), "no range with a value for each"),
     (repeated(EVEN.replace('"3"', '"1e300"'), set_to(K)), "a range of 1e+300 steps"),
     (repeated(EVEN.replace('"0.4"', '"often"'), set_to(K)), 'end of \'r\' is "often": give a number'),

@@ -163,8 +163,8 @@ def laplace(location: float, scale: float) -> Prior:
 
 
 def log_laplace(median: float, scale: float) -> Prior:
-    """A distribution whose logarithm has Laplace's distribution, about that of `median`, with `scale`. The density is that
-    of the component itself."""
+    """A distribution whose logarithm has Laplace's distribution, about that of `median`, with `scale`. The density is
+    that of the component itself."""
     location = float(np.log(_positive(median, "median")))
     return LaplacePrior("log", location, _positive(scale, "scale"), True)
 

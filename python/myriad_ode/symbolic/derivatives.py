@@ -45,7 +45,7 @@ def _forwards(node: Node, argument: Node, partial: Expression | Condition | int,
 
 
 _exponentials = ("exp", "exp2", "expm1")  # whose derivatives are zero where exp is
-_flat = ("tanh", "atan", "rsqrt", "reciprocal", "pow", "powr")  # whose slopes may be zero where their arguments overflow
+_flat = ("tanh", "atan", "rsqrt", "reciprocal", "pow", "powr")  # whose slopes may be zero where arguments overflow
 _largest = float(np.finfo(float).max)
 
 
@@ -54,7 +54,7 @@ def _becomes_flat(node: Node, argument: Node, large: set[int]) -> bool:
         len(node.args) == 2 and node.args[1].op == "constant" and float(node.args[1].value) >= 0)
 
 
-def _far_out(node: Node, argument: Expression, derivative: Expression) -> Condition:
+def _far_out(node: Node, argument: Any, derivative: Expression) -> Condition:
     """Whether the argument of such a function has overflowed, or its derivative has and the argument nearly so; of a
     power only where it is next to zero. The same as in kernel/scalar/partial.hpp."""
     size = abs(argument)

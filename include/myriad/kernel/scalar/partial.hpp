@@ -269,15 +269,14 @@ MYRIAD_FUNCTION partials<S, count> quotient_rule(const S& quotient, const S& v, 
     return -detail::weighted_unless_overflown(quotient, v, dv) * detail::reciprocal_or_zero(v);
 }
 
-/// d, the derivative at x of a function that becomes flat faster than x grows, as tanh; but zero where x has overflowed,
-/// or dx has and x nearly so: the slope is zero there, and times infinity no number.
+/// d, the derivative at x of a function that becomes flat faster than x grows, as tanh; but zero where x has
+/// overflowed, or dx has and x nearly so: the slope is zero there, and times infinity no number.
 template <class S, class Derivative>
 MYRIAD_FUNCTION Derivative flat_far_out(const S& x, const Derivative& dx, const Derivative& d) {
     return select(detail::has_overflown(x, dx), derivative_of_constant<Derivative>::get(), d);
 }
 template <class S, int count>
-MYRIAD_FUNCTION partials<S, count> flat_far_out(const S& x, const partials<S, count>& dx,
-                                                const partials<S, count>& d) {
+MYRIAD_FUNCTION partials<S, count> flat_far_out(const S& x, const partials<S, count>& dx, const partials<S, count>& d) {
     return partials<S, count>::each([&](auto i) MYRIAD_LAMBDA { return detail::flat_far_out(x, dx.in[i], d.in[i]); });
 }
 template <class S, derivative_with_rules<S> D>

@@ -219,8 +219,8 @@ class PetabLikelihood(Objective):
         return known
 
     def _distribution(self, o: Observed, known: dict[Any, Array]) -> tuple[Array, Array]:
-        """Mean and standard deviation, or median and width, of the measurements of an observable, NaN where the latter is
-        not positive."""
+        """Mean and standard deviation, or median and width, of the measurements of an observable, NaN where the second
+        is not positive."""
         shape = next(iter(known.values())).shape if known else (1, o.rows.size)
         mean, deviation = (np.broadcast_to(f, shape) for f in evaluate([o.value, o.noise], known))
         return mean, np.where(deviation > 0, deviation, np.nan)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -47,7 +48,7 @@ def read_prior(name: str, row: Any) -> tuple[Prior | None, tuple[float, float]]:
     return NormalPrior(scale, first, second, float(np.log(second * np.sqrt(2 * np.pi)))), everywhere
 
 
-_of_version_2 = {
+_of_version_2: dict[str, Callable[..., Prior]] = {
     "normal": priors.normal, "laplace": priors.laplace, "cauchy": priors.cauchy, "gamma": priors.gamma,
     "exponential": priors.exponential, "chisquare": priors.chi_squared, "rayleigh": priors.rayleigh,
     "log-normal": log_normal_prior, "log-uniform": priors.log_uniform,

@@ -54,11 +54,12 @@ def read_sedml(path: Path | str) -> dict[str, TimeCourse]:
 
     Models are files of SBML and CellML beside the document or in the archive, or other models of the document; changes
     of attributes are made in those of SBML. `my.read_sedml("study.omex")["task1"].solve(rtol=1e-9)` is the simulation
-    as it is described; a sweep and other options are those of `my.solve`. A repeated task of one time course is a sweep of
-    what it sets. The algorithm is named and not followed.
+    as it is described; a sweep and other options are those of `my.solve`. A repeated task of one time course is a sweep
+    of what it sets. The algorithm is named and not followed.
 
     Raises `my.Error` with task or model for what is not supported: simulations that are no uniform time courses,
-    repeated tasks that compute values or go on from where they were, models that are elsewhere, changes of other kinds than attributes, and what is not valid.
+    repeated tasks that compute values or go on from where they were, models that are elsewhere, changes of other kinds
+    than attributes, and what is not valid.
     """
     files = Files(path)
     documents = files.documents()
@@ -110,7 +111,8 @@ class _Document:
         name, of_tasks = task.get("id", ""), self._listed("listOfSubTasks", task)
         wanted = of_tasks[0].get("task", "") if len(of_tasks) == 1 else ""
         if wanted not in courses:
-            self._refuse(f"the repeated task '{name}' has {len(of_tasks)} tasks, '{wanted}': only one <task> is repeated")
+            self._refuse(f"the repeated task '{name}' has {len(of_tasks)} tasks, '{wanted}': only one <task> is "
+                         "repeated")
         if task.get("resetModel", "true") not in ("true", "1"):
             self._refuse(f"the repeated task '{name}' goes on from where the last repetition ended: set resetModel")
         ranges = {one.get("id", ""): self._values(one, name) for one in self._listed("listOfRanges", task)}
@@ -120,8 +122,8 @@ class _Document:
             symbols = [(one.text or "").strip() for math in change for one in math if _tag(math) == "math"]
             of_id = re.search(r"""\[@id=(['"])([^'"]+)\1\](/@\w+)?$""", change.get("target", "").strip())
             if len(symbols) != 1 or symbols[0] not in ranges or of_id is None:
-                self._refuse(f"the repeated task '{name}' sets {change.get('target')} to a formula: only values of a range, "
-                             "<ci>, of a parameter or a species, [@id='k'], are read")
+                self._refuse(f"the repeated task '{name}' sets {change.get('target')} to a formula: only values of a "
+                             "range, <ci>, of a parameter or a species, [@id='k'], are read")
             changes[of_id.group(2)] = ranges[symbols[0]][:count]
         if not (changes and count) or any(len(values) != count for values in changes.values()):
             self._refuse(f"the repeated task '{name}' sets nothing, or has no range with a value for each repetition")
