@@ -139,7 +139,7 @@ def test_what_does_not_become_flat_keeps_its_infinite_derivative():
     with np.errstate(over="ignore", invalid="ignore"):
         for expression in ((1 + my.exp(x))**-0.01, my.sqrt(1 + my.exp(x)), my.log(1 + my.exp(x))):
             row, = directional([expression], [x], [constant(1000.0)])
-            assert not np.isfinite(float(evaluate(row, {x: 709.0})[0]))
+            assert not np.isfinite(float(evaluate([row], {x: 709.0})[0]))
 
 
 def test_second_derivatives_do_not_stop_where_a_first_one_is_zero():
