@@ -128,7 +128,7 @@ def outcome_of(folder, file, options):
 
 def gradient_of(file, options):
     """Whether the gradient of the likelihood is that of differences of fourth order: (outcome, why). Both are 3 %
-    beside the nominal values, by the interpreter; each component counts times its parameter, in parts of the largest."""
+    beside the nominal values, by the interpreter; a component counts times its parameter, in parts of the largest."""
     problem = my.read_petab(file)
     likelihood = problem.likelihood(interpreted=True, method=options.method, rtol=options.rtol, atol=options.atol,
                                     device="cpu:1", advice=False, time_limit=options.time_limit, max_steps=10_000_000)
