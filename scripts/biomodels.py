@@ -7,8 +7,9 @@ read_sbml, interpreted, and compared at the samples with libRoadRunner (`pip ins
 species, parameters and compartments. A model is "right" where all values are within 1e-4 of libRoadRunner's, plus 1e-7
 of the largest value of the variable; "refused" where Myriad says that it does not support something; "wrong" where a
 value is not within that even with smaller tolerances; "undecided" where libRoadRunner's own values with those differ by
-more than that from its first ones; "failed" where it ends otherwise; "time limit" where it takes too long; "no
-reference" where it is read and solved and libRoadRunner has no values; and "skipped" where the file is too large. Both
+more than that from its first ones; "failed" where it ends otherwise; "neither" where libRoadRunner does so too; "time
+limit" where it takes too long; "no reference" where it is solved and libRoadRunner has no values; and "skipped" where
+it was not begun. Species without an initial value get 0, as libRoadRunner has it, and the line says so. Both
 programs run in processes of their own. The exit status is 1 if a model is wrong or failed.
 """
 
@@ -18,15 +19,17 @@ import pickle
 import sys
 from pathlib import Path
 
+import libsbml
 import numpy as np
 
 import myriad_ode as my
+from myriad_ode.base.errors import listed
 from myriad_ode.models.any_model import names_of
 from myriad_ode.symbolic.symbols import symbol
 
 from model_files import add_options, chosen, difference_of, first_that_ends, tried, within
 
-outcomes = ("right", "refused", "wrong", "undecided", "failed", "time limit", "no reference", "skipped")
+outcomes = ("right", "refused", "wrong", "undecided", "failed", "neither", "time limit", "no reference", "skipped")
 
 
 def files_of(folder):
@@ -59,23 +62,35 @@ def roadrunners(file, options):
 
 
 def myriads(file, options, names):
-    """Myriad's values at the samples, by the same names."""
+    """Myriad's values at the samples, by the same names, and what was given beside the file."""
     model, times = my.read_sbml(file), times_of(options)
+    unset = without_value(file, model)
     run = first_that_ends(model, options.methods, time=(0.0, times[-1]), samples=times, rtol=options.rtol,
                           atol=options.atol, maximum_step=options.end / (options.samples - 1),
-                          time_limit=options.time_limit)
-    return {name: values for name in names if (values := values_of(run, model, name, names)) is not None}
+                          time_limit=options.time_limit, start=dict.fromkeys(unset, 0.0))
+    return ({name: values for name in names if (values := values_of(run, model, name, names)) is not None},
+            f"with 0 for {listed(unset)}, which the file has no value of" if unset else "")
+
+
+def without_value(file, model):
+    """The species of a file that are states of the model without an initial value."""
+    document = libsbml.readSBML(str(file))  # which owns the species
+    species = {s.getId() for s in document.getModel().getListOfSpecies()}
+    return [name for name in model.states if name.removesuffix("_amount") in species and name not in model.defaults]
 
 
 def values_of(run, model, name, names):
     """A variable's values at the samples that are compared; None where Myriad has no such variable, as the parameters
-    that libRoadRunner makes of stoichiometries."""
+    that libRoadRunner makes of stoichiometries, or the file has no value of it and nothing reads it."""
     if f"{name}_amount" in run and f"{name}_amount" not in names:
         name = f"{name}_amount"
     kind = next((kind for kind in ("state", "parameter") if name in names_of(model)[kind]), None)
     if kind is None and name not in run:
         return None
     values = run[symbol(kind, name) if kind else name]
+    if np.isnan(values).all() and any(c.value[1] in (name, name.removesuffix("_amount")) and np.isnan(v)
+                                      for c, v in model.constants.items()):
+        return None
     return (values[0] if values.ndim == 2 else np.full(run.t_sample.shape[1], values[0]))[1::2]
 
 
@@ -96,26 +111,27 @@ def reference_of(file, options):
 
 def outcome_of(file, options):
     """(outcome, why) of a model."""
-    if file.stat().st_size > 1000 * options.largest:
-        return "skipped", f"the file has more than {options.largest:g} kB"
     what, reference = reference_of(file, options)
     if what == "value" and not any(np.isfinite(values).any() for values in reference.values()):
         what, reference = "failed", "NaN"
     names = [*reference] if what == "value" else []
-    ended, found = within(2 * options.time_limit, myriads, file, options, names)
+    longest = (len(options.methods.split(",")) + 1) * options.time_limit
+    ended, found = within(longest, myriads, file, options, names)
     if ended != "value":
+        ended = "neither" if ended == what == "failed" else ended
         return ended, found + ("" if names else f" (libRoadRunner: {' '.join(reference.split())[:100]})")
     if not names:
         return "no reference", f"libRoadRunner: {' '.join(reference.split())[:300]}"
+    found, given = found
     difference = difference_of(reference, found, times_of(options)[1::2])
     if not difference:
-        return "right", ""
+        return "right", given
     finer = argparse.Namespace(**vars(options))
     finer.rtol, finer.atol = 1e-3 * options.rtol, 1e-4 * options.atol
     what, finer_reference = reference_of(file, finer)
-    ended, finer_found = within(2 * options.time_limit, myriads, file, finer, names)
-    if what == ended == "value" and not difference_of(finer_reference, finer_found, times_of(options)[1::2]):
-        return "right", f"with smaller tolerances; else {difference}"
+    ended, finer_found = within(longest, myriads, file, finer, names)
+    if what == ended == "value" and not difference_of(finer_reference, finer_found[0], times_of(options)[1::2]):
+        return "right", f"with smaller tolerances; else {difference}" + (given and f"; {given}")
     if what != "value" or difference_of(finer_reference, reference, times_of(options)[1::2]):
         return "undecided", difference
     return "wrong", difference
@@ -132,7 +148,6 @@ def main():
     parser.add_argument("--atol", type=float, default=1e-14, help="of both (1e-14)")
     parser.add_argument("--methods", default="rodas_5p,dormand_prince_5,cash_karp",
                         help="of integration, each where those before it fail (rodas_5p,dormand_prince_5,cash_karp)")
-    parser.add_argument("--largest", type=float, default=1000.0, metavar="KB", help="size of a file (1000)")
     parser.add_argument("--keep", type=Path, metavar="FOLDER", help="keeps libRoadRunner's values for further runs")
     options = parser.parse_args()
     if options.keep:

@@ -49,12 +49,14 @@ def within(seconds, function, *arguments, refusals=(Refused, CannotInterpret)):
 def first_that_ends(model, methods, interpreted=True, **arguments):
     """The run by the first of several methods that integrates to the end."""
     import myriad_ode as my
+    ends = []
     for method in methods.split(","):
         run = my.solve(model, interpreted=interpreted, device="cpu:1", advice=False, max_steps=10_000_000,
                        method=method, **arguments)
         if not run.failed.any():
             return run
-    raise TimeoutError if run.status[0] == "interrupted" else Error(f"ended as {run.status[0]}")
+        ends.append(str(run.status[0]))
+    raise TimeoutError if set(ends) == {"interrupted"} else Error(f"ended as {', '.join(ends)}")
 
 
 def errors_of(expected, got, relative=1e-4, of_largest=1e-7):

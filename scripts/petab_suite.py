@@ -11,6 +11,8 @@ tolerances; "refused" where read_petab says that it does not support something; 
 is a copy of the measurements, and "not recorded" where there is none; "wrong" where they differ; and "failed" where
 there is no solution or something else goes wrong. Nothing is fetched. Models are interpreted. The exit status is 1 if
 a problem is wrong or failed.
+
+With --gradients derivatives by all that is estimated are compared with differences instead.
 """
 
 import argparse
@@ -27,7 +29,7 @@ import yaml
 import myriad_ode as my
 from myriad_ode.base.errors import CannotInterpret
 from myriad_ode.formats.sbml.math import Refused
-from myriad_ode.inference.measurements import normal_loss
+from myriad_ode.inference.measurements import losses
 
 from sbml_suite import table
 
@@ -87,9 +89,8 @@ class Simulation:
 
     def log_likelihood(self, mean):
         """That of a simulation with the noise of this one, of what is no NaN of it."""
-        losses = [normal_loss(o.scale, self._experiment.measured[o.rows], mean[o.rows], self._deviation[o.rows])
-                  for o in self._experiment.observables]
-        return -sum(np.nansum(loss) for loss in losses)
+        return -sum(np.nansum(losses[o.distribution](o.scale, self._experiment.measured[o.rows], mean[o.rows],
+                                                     self._deviation[o.rows])) for o in self._experiment.observables)
 
 
 def outcome_of(folder, file, options):
@@ -110,6 +111,9 @@ def outcome_of(folder, file, options):
         recorded = pd.read_csv(folder / solution["simulation_files"][0], sep="\t")["simulation"].to_numpy(float)
         good = (abs(value - solution["llh"]) <= solution["tol_llh"]
                 and np.abs(ours.mean - recorded).max() <= solution["tol_simulations"])
+        if "unnorm_log_posterior" in solution:
+            loss = problem.likelihood(interpreted=True, **chosen).loss(list(problem.nominal.values()))
+            good = good and abs(loss + solution["unnorm_log_posterior"]) <= solution["tol_unnorm_log_posterior"]
         return "right" if good else "wrong", "", value, solution["llh"]
     recorded = sorted(folder.glob("simul*.tsv"))
     if options.roadrunner:
@@ -120,6 +124,21 @@ def outcome_of(folder, file, options):
     if np.allclose(simulated, problem._experiment.measured, rtol=1e-6, equal_nan=True):
         return "copied", "the recorded simulation is a copy of the measurements", value, np.nan
     return compared(ours, simulated)
+
+
+def gradient_of(file, options):
+    """Whether the gradient of the likelihood is that of differences of fourth order: (outcome, why). Both are 3 %
+    beside the nominal values, by the interpreter; a component counts times its parameter, in parts of the largest."""
+    problem = my.read_petab(file)
+    likelihood = problem.likelihood(interpreted=True, method=options.method, rtol=options.rtol, atol=options.atol,
+                                    device="cpu:1", advice=False, time_limit=options.time_limit, max_steps=10_000_000)
+    at, h = 1.03 * np.array(list(problem.nominal.values())), 1e-4
+    gradient = likelihood.gradient(at) * at
+    steps = 1 + h * np.array([1, -1, 2, -2])[:, None] * np.eye(at.size)[:, None, :]
+    losses = likelihood.loss((steps * at).reshape(-1, at.size)).reshape(at.size, 4)
+    differences = losses @ np.array([8, -8, -1, 1]) / (12 * h)
+    error = np.abs(gradient - differences).max() / np.abs(gradient).max()
+    return "right" if error < 1e-6 else "wrong", f"{at.size} free, {len(problem.model.states)} states: {error:.1e}"
 
 
 class RoadRunner:
@@ -231,7 +250,10 @@ def check(folder, options):
     begin, ours, theirs = time.perf_counter(), np.nan, np.nan
     file = problem_of(folder)
     try:
-        outcome, why, ours, theirs = outcome_of(folder, file, options)
+        if options.gradients:
+            outcome, why = gradient_of(file, options)
+        else:
+            outcome, why, ours, theirs = outcome_of(folder, file, options)
     except Refused as error:
         outcome, why = "refused", str(error)
     except Exception as error:
@@ -251,6 +273,8 @@ def main():
     parser.add_argument("--time-limit", type=float, default=60.0, help="seconds for each integration (60)")
     parser.add_argument("--roadrunner", action="store_true",
                         help="compare with simulations by libRoadRunner instead of recorded ones")
+    parser.add_argument("--gradients", action="store_true",
+                        help="compare gradients of the likelihood with differences instead")
     options = parser.parse_args()
     warnings.simplefilter("ignore")
     folders = [p for p in sorted(options.folder.iterdir()) if p.is_dir() and problem_of(p) is not None]

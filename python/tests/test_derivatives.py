@@ -114,6 +114,34 @@ def test_quotients_by_what_overflows_have_the_derivative_zero(expression):
         assert np.isfinite(float(evaluate(transposed([expression], [constant(1.0)], [x]), at)[0]))
 
 
+@pytest.mark.parametrize("expression", [
+    (1 + my.exp(x))**-1.5, (1 + my.exp(x))**(-y * y), my.powr(1 + my.exp(x), -y * y), my.tanh(my.exp(x)),
+    my.tanh(-y * my.exp(x)), my.atan(1 - my.exp2(2 * x)), my.rsqrt(1 + my.exp(x)), my.reciprocal(1 + my.cosh(x)),
+    my.expm1(-my.exp(x)), y * my.tanh(my.exp(x) + y)])
+@pytest.mark.parametrize("large", [800.0, 1e300])
+def test_what_becomes_flat_has_the_derivative_zero_where_its_argument_overflows(expression, large):
+    there = {**at, x: large}
+    with np.errstate(over="ignore", invalid="ignore"):
+        row, = derivatives([expression], [x])
+        assert float(evaluate([my.sin(0.0) + row[0]], there)[0]) == 0
+        assert float(evaluate(transposed([expression], [constant(1.0)], [x]), there)[0]) == 0
+        assert float(evaluate(directional([expression], [x], [constant(2.0)]), there)[0]) == 0
+        moderate = {**at, x: 1.1}
+        d = 1e-5
+        ends = [float(evaluate([expression], {**at, x: 1.1 + s})[0]) for s in (d, -d)]
+        for found in (row[0], transposed([expression], [constant(1.0)], [x])[0]):
+            slope = (ends[0] - ends[1]) / (2 * d)
+            assert float(evaluate([found], moderate)[0]) == pytest.approx(slope, rel=1e-6, abs=1e-9)
+
+
+def test_what_does_not_become_flat_keeps_its_infinite_derivative():
+    """Nor does a power that is not next to zero where its base's derivative overflows."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        for expression in ((1 + my.exp(x))**-0.01, my.sqrt(1 + my.exp(x)), my.log(1 + my.exp(x))):
+            row, = directional([expression], [x], [constant(1000.0)])
+            assert not np.isfinite(float(evaluate([row], {x: 709.0})[0]))
+
+
 def test_second_derivatives_do_not_stop_where_a_first_one_is_zero():
     """Of (1 + x^2)^0.5 at 0, where x^2 has the slope 0: d/dx x (1 + x^2)^-0.5 = 1."""
     slope = directional([my.sqrt(1 + x * x)], [x], [constant(1.0)])
@@ -204,9 +232,11 @@ def test_stiff_methods_pass_states_at_which_a_slope_is_infinite():
     assert (run[w] == 0).all()
 
 
+@pytest.mark.parametrize("gate", [  # whose derivatives overflow before what is flat does, on the way
+    1 / (1 + my.exp(-1000 * x)), (1 + my.exp(-1000 * x))**-1.5, my.reciprocal(1 + my.exp(-1000 * x)),
+    1 - my.tanh(my.exp(-1000 * x))], ids=["quotient", "power", "reciprocal", "tanh"])
 @pytest.mark.parametrize("method", ["rodas_5p", "rosenbrock_23"])
-def test_stiff_methods_pass_over_exponentials_that_overflow(method):
-    gate = 1 / (1 + my.exp(-1000 * x))  # whose derivative overflows before its denominator does, on the way
+def test_stiff_methods_pass_over_exponentials_that_overflow(method, gate):
     model = my.model({x: 1 + gate, y: k * y * gate - y})
     run = my.solve(model, {k: 1.0}, start={x: -1, y: 1}, time=(0, 0.9), method=method, rtol=1e-9, atol=1e-9,
                    interpreted=True)

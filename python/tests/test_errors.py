@@ -173,3 +173,9 @@ def test_what_was_not_asked_for(oscillator):
         run["y"]
     with pytest.raises(my.Error, match="no samples were taken"):
         _ = run.t_sample
+
+
+def test_a_message_names_some_of_many_missing_values():
+    x = my.states(" ".join(f"x{i}" for i in range(12)))
+    with pytest.raises(my.Error, match="initial value of 'x0', .*'x7' and 4 more is missing: give it in start="):
+        my.solve(my.model({s: -s for s in x}), time=(0, 1), interpreted=True)

@@ -210,6 +210,13 @@ def test_censored_values_take_part_in_a_fit():
     (my.priors.normal(0.2, 0.05), lambda stats, k: stats.norm.logpdf(k, 0.2, 0.05)),
     (my.priors.log_normal(0.2, 0.3), lambda stats, k: stats.lognorm.logpdf(k, 0.3, scale=0.2)),
     (my.priors.laplace(0.2, 0.05), lambda stats, k: stats.laplace.logpdf(k, 0.2, 0.05)),
+    (my.priors.log_laplace(0.2, 0.3), lambda stats, k: stats.loglaplace.logpdf(k, 1 / 0.3, scale=0.2)),
+    (my.priors.cauchy(0.2, 0.05), lambda stats, k: stats.cauchy.logpdf(k, 0.2, 0.05)),
+    (my.priors.gamma(3, 0.1), lambda stats, k: stats.gamma.logpdf(k, 3, scale=0.1)),
+    (my.priors.exponential(0.3), lambda stats, k: stats.expon.logpdf(k, scale=0.3)),
+    (my.priors.chi_squared(3), lambda stats, k: stats.chi2.logpdf(k, 3)),
+    (my.priors.rayleigh(0.2), lambda stats, k: stats.rayleigh.logpdf(k, scale=0.2)),
+    (my.priors.log_uniform(0.05, 0.6), lambda stats, k: stats.loguniform.logpdf(k, 0.05, 0.6)),
 ])
 def test_a_prior_adds_the_logarithm_of_its_density(prior, density):
     stats = pytest.importorskip("scipy.stats")
@@ -229,6 +236,24 @@ def test_a_prior_adds_the_logarithm_of_its_density(prior, density):
 def test_a_strong_prior_of_laplace_holds_a_component():
     fit = my.fit(model, measured(), free=free, sigma=3.0, starts=6, priors={ke: my.priors.laplace(0.2, 1e-4)}, **tight)
     assert fit.best["ke"] == pytest.approx(0.2, rel=1e-5) and fit.status[fit.index] == "converged"
+
+
+@pytest.mark.parametrize("prior, mode", [
+    (my.priors.gamma(1e6, 2e-7), 0.2), (my.priors.cauchy(0.2, 1e-4), 0.2), (my.priors.rayleigh(1e-4), None)])
+def test_a_strong_prior_decides_and_a_weak_one_does_not(prior, mode):
+    call = {"free": free, "sigma": 3.0, "starts": 6, **tight}
+    plain = my.fit(model, measured(), **call).best["ke"]
+    fit = my.fit(model, measured(), priors={ke: prior}, **call)
+    assert fit.status[fit.index] == "converged"
+    assert fit.best["ke"] == pytest.approx(mode, rel=1e-2) if mode else fit.best["ke"] < 0.1 * plain
+    weak = my.fit(model, measured(), priors={ke: my.priors.exponential(1e9)}, **call)
+    assert weak.best["ke"] == pytest.approx(plain, rel=1e-5)
+
+
+def test_log_uniform_priors_need_two_ends():
+    with pytest.raises(my.Error, match="log-uniform prior from 2 to 1: give the smaller number first"):
+        my.priors.log_uniform(2, 1)
+    assert np.isinf(my.priors.log_uniform(1, 2).terms(np.array([[3.0]]))[0]).all()
 
 
 def long_table():

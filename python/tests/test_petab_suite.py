@@ -8,13 +8,15 @@ import sys
 import pytest
 
 import myriad_ode as my
+from myriad_ode.formats.petab.likelihood import PetabLikelihood
 
 pytest.importorskip("petab.v1")
 from test_petab import measurements, table, write  # noqa: E402
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
 import petab_suite  # noqa: E402
-OPTIONS = argparse.Namespace(method="rodas_5p", rtol=1e-8, atol=1e-10, time_limit=60.0, roadrunner=False)
+OPTIONS = argparse.Namespace(method="rodas_5p", rtol=1e-8, atol=1e-10, time_limit=60.0, roadrunner=False,
+                            gradients=False)
 
 
 @pytest.fixture
@@ -51,10 +53,17 @@ def test_a_recorded_simulation_is_right_in_any_order_and_wrong_where_it_is_anoth
     assert outcome(folder) == "copied"
 
 
+def test_gradients_are_those_of_differences_and_are_told_where_they_are_not(folder, monkeypatch):
+    options = argparse.Namespace(**{**vars(OPTIONS), "gradients": True, "rtol": 1e-10})
+    name, found, *_, why = petab_suite.check(folder, options)
+    assert found == "right" and why.startswith("2 free, 1 states: ")
+    gradient = PetabLikelihood.gradient
+    monkeypatch.setattr(PetabLikelihood, "gradient", lambda self, values: 1.001 * gradient(self, values))
+    assert petab_suite.check(folder, options)[1] == "wrong"
+
+
 def test_what_is_refused_is_told_so(folder):
-    write(folder, observables=table("""observableId observableFormula noiseFormula noiseDistribution
-seen scale*A noiseParameter1_seen normal
-logged log(A) 0.02 laplace"""))
+    write(folder, conditions=table("conditionId loss\nusual 1"))
     assert outcome(folder) == "refused"
 
 

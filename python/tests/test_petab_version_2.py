@@ -124,13 +124,9 @@ def test_a_compartment_changes_and_concentrations_stay(tmp_path):
 
 
 @pytest.mark.parametrize("tables, message", [
-    ({"observables": TABLES["observables"].replace("log-normal", "laplace")},
-     "row 'logged', column noiseDistribution: laplace"),
     ({"parameters": table("parameterId lowerBound upperBound nominalValue estimate priorDistribution priorParameters\n"
-                          "k 0.01 10 0.5 true cauchy 3;5\na 0.1 20 2 true - -\nscale 0.1 20 1.5 true - -\n"
-                          "wide - - 0.4 false - -")}, "row 'k', column priorDistribution: cauchy"),
-    ({"experiments": TABLES["experiments"] + "alone\t-inf\tless\n",
-      "measurements": TABLES["measurements"] + "logged\talone\t1\t1\t\t\n"}, "experiment 'alone' at 1: .* alone"),
+                          "k 0.01 10 0.5 true gamma 3;-5\na 0.1 20 2 true - -\nscale 0.1 20 1.5 true - -\n"
+                          "wide - - 0.4 false - -")}, "Prior parameters .*-5"),
     ({"measurements": TABLES["measurements"] + "logged\tdoses\t0.5\t1\t\t\n"}, "'doses' at 0.5: it begins at 1"),
     ({"measurements": TABLES["measurements"] + "logged\tdoses\tinf\t1\t\t\n"}, "'doses' at inf: a steady"),
     ({"conditions": TABLES["conditions"] + "less\tnothing\t1\n"}, "nothing"),
@@ -141,16 +137,89 @@ def test_what_is_not_supported_is_refused_by_name(tmp_path, tables, message):
         my.read_petab(write(tmp_path, **tables))
 
 
-def test_priors_of_the_standard_are_those_of_version_1(tmp_path):
-    stats = pytest.importorskip("scipy.stats")
+def with_priors(*priors):
     head, *rows = TABLES["parameters"].splitlines()
-    priors = ["laplace\t0.5;0.2", "log-normal\t0.3;0.4", "uniform\t0.5;3", "\t"]
-    with_priors = "\n".join([f"{head}\tpriorDistribution\tpriorParameters", *map("\t".join, zip(rows, priors))]) + "\n"
-    problem = my.read_petab(write(tmp_path, parameters=with_priors))
-    assert problem.free["scale"] == (0.5, 3.0)
+    return "\n".join([f"{head}\tpriorDistribution\tpriorParameters", *map("\t".join, zip(rows, priors))]) + "\n"
+
+
+@pytest.mark.parametrize("kind, numbers, frozen", [
+    ("normal", "0.5;0.2", lambda s: s.norm(0.5, 0.2)), ("laplace", "0.5;0.2", lambda s: s.laplace(0.5, 0.2)),
+    ("cauchy", "0.5;0.2", lambda s: s.cauchy(0.5, 0.2)), ("gamma", "3;0.2", lambda s: s.gamma(3, scale=0.2)),
+    ("gamma", "0.5;2", lambda s: s.gamma(0.5, scale=2)), ("exponential", "0.7", lambda s: s.expon(scale=0.7)),
+    ("chisquare", "4", lambda s: s.chi2(4)), ("rayleigh", "0.7", lambda s: s.rayleigh(scale=0.7)),
+    ("log-normal", "0.3;0.4", lambda s: s.lognorm(0.4, scale=np.exp(0.3))),
+    ("log-laplace", "0.3;0.4", lambda s: s.loglaplace(1 / 0.4, scale=np.exp(0.3))),
+    ("log-uniform", "0.02;3", lambda s: s.loguniform(0.02, 3)), ("uniform", "0.5;3", lambda s: s.uniform(0.5, 2.5)),
+])
+def test_priors_have_their_densities_between_the_bounds(tmp_path, kind, numbers, frozen):
+    # Parameters without a prior have a uniform one where another has one.
+    stats = pytest.importorskip("scipy.stats")
+    problem = my.read_petab(write(tmp_path, parameters=with_priors(f"{kind}\t{numbers}", "\t", "\t", "\t")))
+    prior = frozen(stats)
+    if kind not in ("normal", "laplace", "cauchy"):
+        assert problem.free["k"] == (max(0.01, prior.ppf(0)), pytest.approx(min(10, prior.ppf(1))))
     likelihood = problem.likelihood(**tight)
-    densities = stats.laplace.logpdf(AT[0], 0.5, 0.2) + stats.lognorm.logpdf(AT[1], 0.4, scale=np.exp(0.3))
-    assert likelihood.loss(AT) == pytest.approx(-likelihood.log_likelihood(AT) - densities, rel=1e-7)
+    for k in (0.55, 0.9, 2.7):
+        at = [k, *AT[1:]]
+        density = prior.logpdf(k) - np.log(prior.cdf(10) - prior.cdf(0.01)) - 2 * np.log(20 - 0.1)
+        assert likelihood.loss(at) == pytest.approx(-likelihood.log_likelihood(at) - density, abs=1e-7)
+    (component, found), *_ = likelihood._experiment.priors
+    assert component == 0
+    np.testing.assert_allclose(prior_slope(found, 0.9), by_differences(lambda k: prior_loss(found, k[0]), [0.9])[0],
+                               rtol=1e-6, atol=1e-7)
+    assert np.isinf(prior_loss(found, -0.1)) or kind in ("normal", "laplace", "cauchy", "uniform")
+
+
+def prior_loss(prior, k):
+    with np.errstate(invalid="ignore"):
+        loss = prior.terms(np.array([[k]]))[0].item()
+    return np.inf if np.isnan(loss) else loss
+
+
+def prior_slope(prior, k):
+    _, r, inner = prior.terms(np.array([[k]]))
+    return (r * inner).item()
+
+
+def test_a_prior_without_bounds_has_quantiles_for_a_fit_to_begin_between(tmp_path):
+    stats = pytest.importorskip("scipy.stats")
+    parameters = with_priors("log-normal\t0;0.2", "normal\t2;1", "\t", "\t").replace("0.01\t10", "0\tinf").replace(
+        "a\t0.1\t20", "a\t-inf\tinf")
+    problem = my.read_petab(write(tmp_path, parameters=parameters))
+    assert problem.free["k"] == (0.0, pytest.approx(stats.lognorm.ppf(1 - 1e-9, 0.2)))
+    assert problem.free["a"] == pytest.approx(stats.norm.ppf([1e-9, 1 - 1e-9], 2, 1))
+    likelihood = problem.likelihood(**tight)
+    density = stats.lognorm.logpdf(AT[0], 0.2) + stats.norm.logpdf(AT[1], 2, 1) - np.log(19.9)
+    assert likelihood.loss(AT) == pytest.approx(-likelihood.log_likelihood(AT) - density, rel=1e-7)
+
+
+def test_a_steady_state_alone_is_measured_at_any_time(tmp_path):
+    problem = my.read_petab(write(
+        tmp_path, experiments=table("experimentId time conditionId\nshort 0 start\nalone -inf less"),
+        measurements=TABLES["measurements"].split("logged\tdoses")[0] + "logged\talone\t1\t1\t\t\n"
+        "logged\talone\tinf\t1\t\t\n"))
+    likelihood = problem.likelihood(interpreted=True, **tight)
+    np.testing.assert_allclose(likelihood.simulate(AT), [*expected(*AT)[:3], *[0.1 / AT[0] + 0.1] * 2], rtol=1e-7)
+    np.testing.assert_allclose(likelihood.gradient(AT), by_differences(likelihood.loss, AT), rtol=1e-5)
+
+
+@pytest.mark.parametrize("kind", ["laplace", "log-laplace"])
+def test_noise_of_laplaces_distribution(tmp_path, kind):
+    stats = pytest.importorskip("scipy.stats")
+    problem = my.read_petab(write(tmp_path, observables=TABLES["observables"].replace("log-normal", kind)))
+    likelihood = problem.likelihood(**tight)
+    logged = (problem.measurements["observableId"] == "logged").to_numpy()
+    m, y = expected(*AT), problem.measurements["measurement"].to_numpy(float)
+    b = np.array([0, 0, 0.4, 0.4, 0, 0, 0.1, 0.1, 0.1, 0])
+    s = np.where(logged, 0.1 + (m - b) / 10, np.array([0.2, 0.4, 0, 0, 0.2, 0.2, 0, 0, 0, 0.2]))
+    density = (stats.laplace.logpdf(y, m, s) if kind == "laplace" else
+               stats.laplace.logpdf(np.log(y), np.log(m), s) - np.log(y))
+    log_likelihood = np.where(logged, density, stats.norm.logpdf(y, m, s)).sum()
+    assert likelihood.log_likelihood(AT) == pytest.approx(log_likelihood, rel=1e-8)
+    assert likelihood.loss(AT) == pytest.approx(-log_likelihood, rel=1e-8)
+    np.testing.assert_allclose(likelihood.gradient(AT), by_differences(likelihood.loss, AT), rtol=1e-5)
+    with pytest.raises(my.Error, match="Laplace"):
+        likelihood.residuals(AT)
 
 
 NAMED = sbml.document([sbml.compartment("c", 1.0), sbml.species("Pi", concentration=4.0), sbml.parameter("Time", 2.0),
@@ -160,6 +229,7 @@ NAMED = sbml.document([sbml.compartment("c", 1.0), sbml.species("Pi", concentrat
 @pytest.mark.parametrize("formula, expected", [
     ("k*sqrt(Pi)", lambda t: 0.5 * 2 * np.exp(-0.25 * t)), ("Pi^(1/3)/sqrt(k)", lambda t: (
         (4 * np.exp(-0.5 * t))**(1 / 3) / 0.5**0.5)),
+    ("log(Pi, 2)+sign(Pi-2)", lambda t: 2 - 0.5 * t / np.log(2) + np.sign(4 * np.exp(-0.5 * t) - 2)),
     ("Pi+0*Time", lambda t: 4 * np.exp(-0.5 * t)), ("Time*k", lambda t: 1 + 0 * t),
     ("piecewise(7, (time >= 1 && k < 1) || k > 8, 3)", lambda t: np.where(t >= 1, 7, 3)),
 ])

@@ -694,3 +694,24 @@ def test_errors_in_how_a_model_is_drawn_do_not_matter():
         <listOfRules><rateRule variable="x"><math xmlns="http://www.w3.org/1998/Math/MathML"><ci>x</ci></math>
         </rateRule></listOfRules></model></sbml>"""
     assert my.read_sbml(text).start() == {"x": 3}
+
+
+def test_the_script_for_collections_tells_what_became_of_a_model(tmp_path, monkeypatch):
+    pytest.importorskip("roadrunner")
+    monkeypatch.syspath_prepend(str(_script.parent))
+    import biomodels
+    options = argparse.Namespace(end=10.0, samples=11, rtol=1e-8, atol=1e-12, methods="rodas_5p", time_limit=20.0,
+                                 keep=None)
+
+    def outcome(*parts):
+        (tmp_path / "model.xml").write_text(sbml_models.document([*parts]))
+        return biomodels.outcome_of(tmp_path / "model.xml", options)
+
+    cell, decay = sbml_models.compartment("c", 1.0), reaction("loss", "S ->", "k * S")
+    assert outcome(cell, species("S", concentration=2.0), parameter("k", 0.3), decay) == ("right", "")
+    grows = reaction("growth", "-> S", "k")
+    what, why = outcome(cell, species("S"), parameter("k", 0.3), grows)
+    assert what == "right" and why.startswith("with 0 for 'S'")
+    assert outcome(cell, species("S", concentration=2.0), parameter("k"), decay)[0] == "neither"
+    blows_up = reaction("growth", "-> S", "k * S * S", modifiers="S")
+    assert outcome(cell, species("S", concentration=2.0), parameter("k", 0.3), blows_up)[0] == "neither"

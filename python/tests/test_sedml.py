@@ -137,7 +137,7 @@ def test_an_archive_has_the_courses_of_its_documents_the_master_first(tmp_path):
     (sedml(model(), '<steadyState id="sim"><algorithm kisaoID="KISAO:0000407"/></steadyState>'),
      "is a <steadyState>, and only a <uniformTimeCourse> is read"),
     (sedml(model(), COURSE.replace('outputEndTime="3"', 'outputEndTime="1"')), "give initialTime <= outputStartTime <"),
-    (sedml(model(), COURSE.replace('numberOfPoints="4"', '')), 'the simulation \'sim\' has numberOfPoints="": give a'),
+    (sedml(model(), COURSE.replace('numberOfPoints="4"', '')), 'numberOfPoints of \'sim\' is "": give a'),
     ("<model/>", "the first element is <model>, and not <sedML>"),
     (sedml(model(), head='<!DOCTYPE x [<!ENTITY a "aaaa"><!ENTITY b "&a;&a;">]>'), "it declares the entity 'a'"),
     ("<sedML", "this is no XML"),
@@ -148,12 +148,61 @@ def test_what_is_not_supported_or_not_there_is_named(folder, text, message):
     assert message in str(refused.value)
 
 
-def test_repeated_tasks_are_refused(folder):
-    repeated = ('<repeatedTask id="many" range="r" resetModel="true"><listOfRanges><uniformRange id="r" start="0" '
-                'end="1" numberOfPoints="3" type="linear"/></listOfRanges><listOfSubTasks><subTask task="one" '
-                'order="1"/></listOfSubTasks></repeatedTask>')
-    with pytest.raises(my.Error, match="task 'many' is a <repeatedTask>, and only a <task> is read: sweep the values"):
-        courses(folder, sedml(model(), tasks=TASK + repeated))
+def repeated(ranges, changes, attributes='range="r" resetModel="true"', tasks='<subTask task="one" order="1"/>'):
+    return (f'<repeatedTask id="many" {attributes}><listOfRanges>{ranges}</listOfRanges><listOfChanges>{changes}'
+            f"</listOfChanges><listOfSubTasks>{tasks}</listOfSubTasks></repeatedTask>")
+
+
+def set_to(target, value="<ci> r </ci>"):
+    return (f'<setValue target="{target}" modelReference="m" range="r">'
+            f'<math xmlns="http://www.w3.org/1998/Math/MathML">{value}</math></setValue>')
+
+
+EVEN = '<uniformRange id="r" start="0.1" end="0.4" numberOfPoints="3" type="linear"/>'
+FEW = '<vectorRange id="s"><value>1</value><value> 2e0 </value><value>4</value><value>8</value></vectorRange>'
+
+
+@pytest.mark.parametrize("ranges, rates", [
+    (EVEN, [0.1, 0.2, 0.3, 0.4]), (EVEN.replace("numberOfPoints", "numberOfSteps"), [0.1, 0.2, 0.3, 0.4]),
+    (EVEN.replace("linear", "log"), np.geomspace(0.1, 0.4, 4)), (FEW.replace('id="s"', 'id="r"'), [1, 2, 4, 8])])
+def test_a_repeated_task_is_a_sweep(folder, ranges, rates):
+    tasks = repeated(ranges, set_to(K)) + TASK  # also where what it repeats comes later
+    found = courses(folder, sedml(model(), tasks=tasks))
+    assert list(found) == ["many", "one"]
+    run = found["many"].solve(rtol=1e-10, atol=1e-14)
+    np.testing.assert_allclose(run["S_sample"], 2 * np.exp(-np.outer(rates, found["many"].times)), rtol=1e-7,
+                               atol=1e-13)
+    assert found["one"].solve().size == 1 and found["many"].solve({"k": [1.0, 2.0]}).size == 2
+
+
+def test_a_repeated_task_sets_initial_values_and_several_things_at_once(folder):
+    changes = set_to(K.removesuffix("/@value")) + set_to(S, "<ci>s</ci>")
+    course = courses(folder, sedml(model(), tasks=TASK + repeated(EVEN + FEW, changes)))["many"]
+    assert course.name == "many" and list(course.changes) == ["k", "S"]
+    run = course.solve(rtol=1e-10, atol=1e-14)
+    np.testing.assert_allclose(run["S_sample"][:, -1], np.array([1, 2, 4, 8]) * np.exp(-3 * np.linspace(0.1, 0.4, 4)),
+                               rtol=1e-7)
+
+
+@pytest.mark.parametrize("task_of, message", [
+    (repeated(EVEN, set_to(K), 'range="r" resetModel="false"'), "goes on from where the last repetition ended"),
+    (repeated(EVEN, set_to(K, "<apply><times/><ci>r</ci><cn>2</cn></apply>")), "to a formula: only values of a range"),
+    (repeated(EVEN, set_to(K.replace("'k'", "'q'"))), "sets 'q', which is no parameter and no species"),
+    (repeated(EVEN, set_to(K, "<ci>q</ci>")), "to a formula: only values of a range"),
+    (repeated(EVEN, ""), "sets nothing"),
+    (repeated(EVEN, set_to(K), 'range="q" resetModel="true"'), "sets nothing, or has"),
+    (repeated(EVEN + FEW.replace("<value>4</value>", ""), set_to(K, "<ci>s</ci>")), "no range with a value for each"),
+    (repeated(EVEN.replace('"3"', '"1e300"'), set_to(K)), "a range of 1e+300 steps"),
+    (repeated(EVEN.replace('"0.4"', '"often"'), set_to(K)), 'end of \'r\' is "often": give a number'),
+    (repeated('<functionalRange id="r" range="q"/>', set_to(K)), "has a <functionalRange>: only uniform and vector"),
+    (repeated(EVEN, set_to(K), tasks='<subTask task="q"/>'), "has 1 tasks, 'q': only one <task> is repeated"),
+    (repeated(EVEN, set_to(K), tasks='<subTask task="many"/>'), "only one <task> is repeated"),
+    (repeated(EVEN.replace("linear", "log").replace("0.1", "-1"), set_to(K)), "a logarithmic range from -1 to 0.4"),
+])
+def test_repetitions_that_are_no_sweep_are_refused(folder, task_of, message):
+    with pytest.raises(my.Error) as refused:
+        courses(folder, sedml(model(), tasks=TASK + task_of))
+    assert message in str(refused.value)
 
 
 def test_archives_that_unpack_without_bound_or_have_no_manifest_are_refused(tmp_path):

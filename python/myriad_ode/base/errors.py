@@ -32,6 +32,13 @@ class UnknownName(Error, KeyError):
     __str__ = Exception.__str__  # which, unlike a KeyError's, shows the message as it is
 
 
+def listed(names: Iterable[str], most: int = 8) -> str:
+    """Names in a message: the first ones, and how many more there are."""
+    all_names = [repr(name) for name in names]
+    more = f" and {len(all_names) - most} more" if len(all_names) > most else ""
+    return ", ".join(all_names[:most]) + more
+
+
 #: In a thread that the package has started, the line of the user's call, if it has set one.
 caller = threading.local()
 

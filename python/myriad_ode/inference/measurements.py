@@ -90,7 +90,18 @@ def normal_loss(scale: str, measured: Array, mean: Array, deviation: Array) -> A
     """The negative logarithms of the densities of measurements, normally distributed on a scale."""
     loss = 0.5 * ((scaled_by(scale, mean)[0] - scaled_by(scale, measured)[0]) / deviation)**2 + np.log(deviation) + (
         0.5 * np.log(2 * np.pi))
-    return loss if scale == "lin" else loss + np.log(measured * (_ln10 if scale == "log10" else 1.0))
+    return loss + _log_of_value(scale, measured)
+
+
+def _log_of_value(scale: str, measured: Array) -> Array:
+    """What makes the negative logarithm of a density on a scale that of the value itself."""
+    return np.zeros_like(measured) if scale == "lin" else np.log(measured * (_ln10 if scale == "log10" else 1.0))
+
+
+def laplace_loss(scale: str, measured: Array, median: Array, width: Array) -> Array:
+    """The same of measurements with Laplace's distribution."""
+    distance = np.abs(scaled_by(scale, median)[0] - scaled_by(scale, measured)[0])
+    return distance / width + np.log(2 * width) + _log_of_value(scale, measured)
 
 
 def normal_terms(scale: str, measured: Array, mean: Array, by_mean: Array, deviation: Array, by_deviation: Array,
@@ -106,6 +117,24 @@ def normal_terms(scale: str, measured: Array, mean: Array, by_mean: Array, devia
         jacobian.append((np.sqrt(2) * by_deviation / deviation[..., None])[:, varies])
     return Terms(normal_loss(scale, measured, mean, deviation), np.concatenate(residuals, axis=1),
                  np.concatenate(jacobian, axis=1))
+
+
+def laplace_terms(scale: str, measured: Array, median: Array, by_median: Array, width: Array, by_width: Array,
+                  varies: Array) -> Terms:
+    """The same of measurements with Laplace's distribution, whose Fisher information is (dm / s)^2 + (ds / s)^2. At
+    its kink the slope by the median is zero."""
+    on_scale, inner = scaled_by(scale, median)
+    d = (on_scale - scaled_by(scale, measured)[0]) / width
+    residuals, jacobian = [np.sign(d)], [by_median * (inner / width)[..., None]]
+    if varies.any():
+        residuals.append((1 - np.abs(d))[:, varies])
+        jacobian.append((by_width / width[..., None])[:, varies])
+    return Terms(laplace_loss(scale, measured, median, width), np.concatenate(residuals, axis=1),
+                 np.concatenate(jacobian, axis=1))
+
+
+losses = {"normal": normal_loss, "laplace": laplace_loss}  #: of measurements, by the distribution of their noise
+terms = {"normal": normal_terms, "laplace": laplace_terms}
 
 
 def censored_terms(scale: str, limit: Array, side: Array, mean: Array, by_mean: Array, deviation: Array,

@@ -5,6 +5,7 @@ them before there are data."""
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import lgamma
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,7 +17,8 @@ from .measurements import Terms, scaled_by
 if TYPE_CHECKING:
     from ..symbolic.types import Array
 
-__all__ = ["laplace", "log_normal", "normal"]
+__all__ = ["cauchy", "chi_squared", "exponential", "gamma", "laplace", "log_laplace", "log_normal", "log_uniform",
+           "normal", "rayleigh"]
 
 
 class Prior:
@@ -63,6 +65,65 @@ class LaplacePrior(Prior):
         return loss, slope * np.sqrt(size), inner / (self.width * np.sqrt(size))
 
 
+@dataclass(frozen=True)
+class CauchyPrior(Prior):
+    """Cauchy's distribution."""
+
+    location: float
+    width: float
+
+    def terms(self, value: Array) -> tuple[Array, Array, Array]:
+        d = (value - self.location) / self.width
+        weight = np.sqrt(2 / (1 + d**2))
+        return np.log1p(d**2) + np.log(np.pi * self.width), d * weight, weight / self.width
+
+
+@dataclass(frozen=True)
+class PowerPrior(Prior):
+    """A density that is x^power exp(-rate x^exponent - constant) for positive x, and zero elsewhere."""
+
+    power: float
+    rate: float
+    exponent: float
+    constant: float
+
+    def terms(self, value: Array) -> tuple[Array, Array, Array]:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            x = np.where(value > 0, value, np.nan)
+            grown = self.rate * x**self.exponent
+            loss = grown - self.power * np.log(x) + self.constant
+            inner = np.sqrt(self.exponent**2 * grown + abs(self.power)) / x
+            slope = (self.exponent * grown - self.power) / x
+        return np.where(value > 0, loss, np.inf), slope / inner, inner
+
+
+@dataclass(frozen=True)
+class ScaledPrior(Prior):
+    """Another density by a factor exp(-constant), as of the part of it between bounds; or that factor alone."""
+
+    prior: Prior | None
+    constant: float
+
+    def terms(self, value: Array) -> tuple[Array, Array, Array]:
+        if self.prior is None:
+            return np.full_like(value, self.constant), np.zeros_like(value), np.zeros_like(value)
+        loss, r, inner = self.prior.terms(value)
+        return loss + self.constant, r, inner
+
+
+@dataclass(frozen=True)
+class BoundedPrior(Prior):
+    """Another density that is zero outside an interval."""
+
+    prior: Prior
+    least: float
+    most: float
+
+    def terms(self, value: Array) -> tuple[Array, Array, Array]:
+        loss, r, inner = self.prior.terms(value)
+        return np.where((value >= self.least) & (value <= self.most), loss, np.inf), r, inner
+
+
 def terms_of(prior: Prior, sets: Array, component: int) -> Terms:
     """The term of a prior of the free component of this number, for sets of values in rows."""
     loss, r, inner = prior.terms(sets[:, [component]])
@@ -99,3 +160,46 @@ def log_normal_prior(mean: float, deviation: float) -> NormalPrior:
 def laplace(location: float, scale: float) -> Prior:
     """Laplace's distribution, of the density exp(-|value - location| / scale) / (2 scale)."""
     return LaplacePrior("lin", real(location, "location"), _positive(scale, "scale"))
+
+
+def log_laplace(median: float, scale: float) -> Prior:
+    """A distribution whose logarithm has Laplace's distribution, about that of `median`, with `scale`. The density is
+    that of the component itself."""
+    location = float(np.log(_positive(median, "median")))
+    return LaplacePrior("log", location, _positive(scale, "scale"), True)
+
+
+def cauchy(location: float, scale: float) -> Prior:
+    """Cauchy's distribution, half of which lies between location - scale and location + scale."""
+    return CauchyPrior(real(location, "location"), _positive(scale, "scale"))
+
+
+def gamma(shape: float, scale: float) -> Prior:
+    """A gamma distribution, of the mean shape scale."""
+    shape, scale = _positive(shape, "shape"), _positive(scale, "scale")
+    return PowerPrior(shape - 1, 1 / scale, 1.0, lgamma(shape) + shape * float(np.log(scale)))
+
+
+def exponential(scale: float) -> Prior:
+    """An exponential distribution, of the mean `scale`."""
+    return gamma(1.0, scale)
+
+
+def chi_squared(degrees_of_freedom: float) -> Prior:
+    """A chi-squared distribution."""
+    return gamma(_positive(degrees_of_freedom, "degrees_of_freedom") / 2, 2.0)
+
+
+def rayleigh(scale: float) -> Prior:
+    """Rayleigh's distribution, of the mode `scale`."""
+    scale = _positive(scale, "scale")
+    return PowerPrior(1.0, 0.5 / scale**2, 2.0, 2 * float(np.log(scale)))
+
+
+def log_uniform(least: float, most: float) -> Prior:
+    """A distribution whose logarithm is uniform between those of `least` and `most`; beyond, the density is zero."""
+    least, most = _positive(least, "least"), _positive(most, "most")
+    if not least < most:
+        raise Error(f"a log-uniform prior from {least:g} to {most:g}: give the smaller number first")
+    density = PowerPrior(-1.0, 0.0, 1.0, float(np.log(np.log(most / least))))
+    return BoundedPrior(density, least, most)

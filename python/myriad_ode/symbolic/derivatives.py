@@ -7,6 +7,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from . import expression as ex, functions as fn
 from .node import Node, walk
 from .operations import known_of
@@ -26,30 +28,53 @@ def _times(partial: Expression | Condition | int, derivative: Expression) -> Exp
 
 
 def _forwards(node: Node, argument: Node, partial: Expression | Condition | int, derivative: Expression,
-              singular: set[int]) -> Expression:
+              singular: set[int], large: set[int]) -> Expression:
     """The product of a partial derivative and that of its argument. Zero where that is, though the partial one may be
-    infinite there; for exponentials, where they are, as exp(n log(x)) at x = 0; and for quotients by what `singular`
-    has, where they are, as 1 / (1 + exp(x)) for large x."""
+    infinite there; for exponentials, where they are, as exp(n log(x)) at x = 0; for quotients by what `singular` has,
+    where they are, as 1 / (1 + exp(x)) for large x; and for functions of what `large` has that become flat, far out."""
     if derivative.op == "constant" and derivative.value == 0:
         return derivative
     if isinstance(partial, ex.Expression) and derivative.op != "constant":
         if known_of(node.op).is_singular:  # so that it has the right derivatives in its turn
             partial = fn.where(fn.is_finite(partial) | (derivative != 0.0), partial, 0.0)
-        elif node.op in ("exp", "exp2") and id(argument) in singular or _is_overflowing(node, argument, singular):
+        elif node.op in _exponentials and id(argument) in singular or _is_overflowing(node, argument, singular):
             return fn.where(partial == 0.0, 0.0, partial * derivative)
+        if _becomes_flat(node, argument, large):
+            return fn.where(_far_out(node, argument, derivative), 0.0, partial * derivative)
     return _times(partial, derivative)
+
+
+_exponentials = ("exp", "exp2", "expm1")  # whose derivatives are zero where exp is
+_flat = ("tanh", "atan", "rsqrt", "reciprocal", "pow", "powr")  # whose slopes may be zero where arguments overflow
+_largest = float(np.finfo(float).max)
+
+
+def _becomes_flat(node: Node, argument: Node, large: set[int]) -> bool:
+    return node.op in _flat and argument is node.args[0] and id(argument) in large and not (
+        len(node.args) == 2 and node.args[1].op == "constant" and float(node.args[1].value) >= 0)
+
+
+def _far_out(node: Node, argument: Any, derivative: Expression) -> Condition:
+    """Whether the argument of such a function has overflowed, or its derivative has and the argument nearly so; of a
+    power only where it is next to zero. The same as in kernel/scalar/partial.hpp."""
+    size = abs(argument)
+    far = (size > _largest) | ((size > _largest * 2.0**-32) & (abs(derivative) > _largest))
+    return far & (abs(node.args[1] * node) < 2.0**64 / _largest) if len(node.args) == 2 else far
 
 
 _overflow = ("exp", "exp2", "expm1", "sinh", "cosh")  # of arguments of usual size, and their derivatives with them
 
 
-def _with_singular(order: Sequence[Node]) -> set[int]:
-    """Nodes whose derivatives may be infinite."""
+def _with_singular(order: Sequence[Node]) -> tuple[set[int], set[int]]:
+    """Nodes whose derivatives may be infinite, and those of them whose values may be so where they are."""
     found: set[int] = set()
+    large: set[int] = set()
     for node in order:
-        if known_of(node.op).is_singular or node.op in _overflow or any(id(a) in found for a in node.args):
+        if node.op in _overflow or any(id(a) in large for a in node.args):
+            large.add(id(node))
+        if id(node) in large or known_of(node.op).is_singular or any(id(a) in found for a in node.args):
             found.add(id(node))
-    return found
+    return found, large
 
 
 def _is_overflowing(node: Node, argument: Node, singular: set[int]) -> bool:
@@ -76,7 +101,7 @@ def derivatives(roots: Sequence[Node], symbols: Sequence[Node]) -> list[dict[int
     number = {id(s): i for i, s in enumerate(symbols)}
     found: dict[int, dict[int, Expression]] = {}
     order = walk(roots)
-    singular = _with_singular(order)
+    singular, large = _with_singular(order)
     for node in order:
         total: dict[int, Expression] = {}
         if id(node) in number:
@@ -89,7 +114,7 @@ def derivatives(roots: Sequence[Node], symbols: Sequence[Node]) -> list[dict[int
                 if partial is None:
                     continue
                 for i, derivative in found[id(argument)].items():
-                    term = _forwards(node, argument, partial, derivative, singular)
+                    term = _forwards(node, argument, partial, derivative, singular, large)
                     total[i] = total[i] + term if i in total else term
         found[id(node)] = total
     return [found[id(root)] for root in roots]
@@ -106,7 +131,7 @@ def transposed(roots: Sequence[Node], weights: Sequence[Expression],
     the roots, however many symbols there are: reverse mode. None where `derivatives` gives None."""
     depends = {id(s) for s in symbols}
     order = walk(roots)
-    above_singular = _with_singular(order)
+    above_singular, above_large = _with_singular(order)
     for node in order:
         if node.type == ex.real and any(id(a) in depends for a in node.args):
             depends.add(id(node))
@@ -153,8 +178,9 @@ def transposed(roots: Sequence[Node], weights: Sequence[Expression],
                 if is_singular:
                     term = fn.where(partial == 0.0, 0.0, term)
                 is_singular = is_singular or known_of(node.op).is_singular
-                is_conditional = (is_conditional or node.op in ("exp", "exp2") and id(argument) in above_singular
-                                  or _is_overflowing(node, argument, above_singular))
+                is_conditional = (is_conditional or node.op in _exponentials and id(argument) in above_singular
+                                  or _is_overflowing(node, argument, above_singular)
+                                  or _becomes_flat(node, argument, above_large))
             add(argument, term, is_conditional, is_singular)
     return [by.get(id(s), ex.constant(0.0)) for s in symbols]
 
@@ -165,14 +191,14 @@ def directional(roots: Sequence[Node], symbols: Sequence[Node],
     gives None."""
     moves: dict[int, Expression] = {id(s): d for s, d in zip(symbols, direction)}
     order = walk(roots)
-    singular = _with_singular(order)
+    singular, large = _with_singular(order)
     for node in order:
         if node.type != ex.real or not any(id(a) in moves for a in node.args):
             continue
         rule = _cheap_rule(node.op)
         if rule is None:
             return None
-        terms = [_forwards(node, a, partial, moves[id(a)], singular)
+        terms = [_forwards(node, a, partial, moves[id(a)], singular, large)
                  for partial, a in zip(rule(node, *node.args), node.args) if partial is not None and id(a) in moves]
         for term in terms:
             moves[id(node)] = moves[id(node)] + term if id(node) in moves else term

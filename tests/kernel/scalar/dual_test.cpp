@@ -245,6 +245,37 @@ TEST_CASE("a quotient by what overflows has the derivative zero") {
     CHECK(std::isinf((1.0 / dual<double>(0.0, 1.0)).derivative));
 }
 
+TEST_CASE("what becomes flat has the derivative zero where its argument overflows") {
+    using several = dual<double, partials<double, 2>>;
+    const auto all = [](const auto& x, auto&& check) {
+        const auto large = 1.0 + exp(x);
+        check(tanh(large)), check(tanh(-exp(x))), check(atan(large)), check(rsqrt(large)), check(reciprocal(large));
+        check(pow(large, -2.0)), check(powr(large, -1.5)), check(pow(large, -decltype(large)(1.0)));
+        check(expm1(-exp(x)));
+    };
+    for (const double at : {710.0, 800.0, 1e300}) {
+        all(dual<double>(at, 3.0), [](const auto& f) { CHECK(f.derivative == 0); });
+        all(dual<double, partial<double>>(at, 3.0), [](const auto& f) { CHECK(f.derivative == 0); });
+        all(several(at, {{partial<double>(3.0), partial<double>(-2.0)}}), [](const auto& f) {
+            for (int i = 0; i < 2; ++i) CHECK(f.derivative.in[i] == 0);
+        });
+        all(dual<pack<double, 4>>(pack<double, 4>(at), pack<double, 4>(3.0)),
+            [](const auto& f) { CHECK(get_lane(f, 2).derivative == 0); });
+    }
+    // of which exp's is infinite alone
+    all(dual<double>(709.0, 1000.0), [](const auto& f) { CHECK(std::fabs(f.derivative) < 1e-140); });
+    // and none is lost that is not zero, or has no value otherwise
+    const double infinity = std::numeric_limits<double>::infinity(), nan = std::nan("");
+    const auto large = [](double v, double by) { return 1.0 + exp(dual<double>(v, by)); };
+    CHECK(std::isinf(pow(large(709.0, 1000.0), -0.01).derivative));
+    CHECK(std::isinf(sqrt(large(709.0, 1000.0)).derivative));
+    CHECK(std::isnan(tanh(dual<double>(2.0, nan)).derivative));
+    CHECK(std::isnan(pow(dual<double>(1e300, nan), -1.0).derivative));
+    CHECK(std::isinf(tanh(dual<double>(2.0, infinity)).derivative));
+    check_close(pow(large(100.0, 1.0), -1.5).derivative / std::exp(-150.0), -1.5L);
+    check_close(pow(1.0 + dual<double>(1e10, 1.0), 2.0).derivative, 2.0L * (1.0L + 1e10L));
+}
+
 TEST_CASE("quotients whose parts are nearly too large have their derivatives, and lose none that is not") {
     const auto ratio = [](const auto& x) { return exp(x) / (1.0 + exp(x)); };
     CHECK(std::fabs(ratio(dual<double>(690.0, 1000.0)).derivative) < 1e-9);

@@ -262,7 +262,7 @@ struct functions<dual<S, Derivative>> {
         return D(f::acos(x.value), detail::quotient_unless_zero(-x.derivative, leg(x.value)));
     }
     static MYRIAD_FUNCTION D atan(const D& x) {
-        return D(f::atan(x.value), x.derivative / (constant(real(1)) + x.value * x.value));
+        return D(f::atan(x.value), detail::flat_at(x, x.derivative / (constant(real(1)) + x.value * x.value)));
     }
     static MYRIAD_FUNCTION D sinpi(const D& x) {
         return D(f::sinpi(x.value), constant(pi) * x.derivative * f::cospi(x.value));
@@ -270,7 +270,6 @@ struct functions<dual<S, Derivative>> {
     static MYRIAD_FUNCTION D cospi(const D& x) {
         return D(f::cospi(x.value), -constant(pi) * x.derivative * f::sinpi(x.value));
     }
-
     static MYRIAD_FUNCTION void sincos(const D& x, D& sine, D& cosine) {
         f::sincos(x.value, sine.value, cosine.value);
         sine.derivative = x.derivative * cosine.value;
@@ -283,18 +282,18 @@ struct functions<dual<S, Derivative>> {
     }
     static MYRIAD_FUNCTION D rsqrt(const D& x) {
         const S r = f::rsqrt(x.value);
-        return D(r, constant(real(-0.5)) * x.derivative * (r * r * r));
+        return D(r, detail::flat_at(x, constant(real(-0.5)) * x.derivative * (r * r * r)));
     }
     static MYRIAD_FUNCTION D reciprocal(const D& x) {
         const S r = f::reciprocal(x.value);
-        return D(r, -x.derivative * r * r);
+        return D(r, detail::flat_at(x, -x.derivative * r * r));
     }
 
     static MYRIAD_FUNCTION D sinh(const D& x) { return D(f::sinh(x.value), x.derivative * f::cosh(x.value)); }
     static MYRIAD_FUNCTION D cosh(const D& x) { return D(f::cosh(x.value), x.derivative * f::sinh(x.value)); }
     static MYRIAD_FUNCTION D tanh(const D& x) {
         const S t = f::tanh(x.value);
-        return D(t, x.derivative * (constant(real(1)) - t) * (constant(real(1)) + t));
+        return D(t, detail::flat_at(x, x.derivative * (constant(real(1)) - t) * (constant(real(1)) + t)));
     }
 
     // Zero where the exponential is, as exp(n log(x)) at x = 0.
@@ -315,7 +314,9 @@ struct functions<dual<S, Derivative>> {
     static MYRIAD_FUNCTION D log10(const D& x) {
         return D(f::log10(x.value), detail::quotient_unless_zero(constant(log10_e) * x.derivative, x.value));
     }
-    static MYRIAD_FUNCTION D expm1(const D& x) { return D(f::expm1(x.value), x.derivative * f::exp(x.value)); }
+    static MYRIAD_FUNCTION D expm1(const D& x) {
+        return D(f::expm1(x.value), detail::weighted_unless_zero(f::exp(x.value), x.derivative));
+    }
     static MYRIAD_FUNCTION D log1p(const D& x) {
         return D(f::log1p(x.value), detail::quotient_unless_zero(x.derivative, constant(real(1)) + x.value));
     }
@@ -325,8 +326,7 @@ struct functions<dual<S, Derivative>> {
     static MYRIAD_FUNCTION D pow_of_base(const D& x, const B& exponent) {
         const S y = to_kind<S>(exponent);
         const S slope = y * f::pow(x.value, y - constant(real(1)));
-        return D(f::pow(x.value, y),
-                 detail::scaled_unless_zero(select(y == constant(real(0)), y, slope), x.derivative));
+        return by_base(f::pow(x.value, y), x, y, select(y == constant(real(0)), y, slope));
     }
     template <class B>
     static MYRIAD_FUNCTION D powr(const D& x, const B& exponent) {
@@ -334,7 +334,7 @@ struct functions<dual<S, Derivative>> {
         const E y = to_kind<E>(exponent), one(real(1));
         // here x^0 is 1, though powr(0, 0) is not
         const S slope = select(y == one, S(one), y * f::powr(x.value, y - one));
-        return D(f::powr(x.value, y), detail::scaled_unless_zero(slope, x.derivative));
+        return by_base(f::powr(x.value, y), x, S(y), slope);
     }
     template <class A>
     static MYRIAD_FUNCTION D pow_of_exponent(const A& base, const D& y) {
@@ -381,6 +381,12 @@ struct functions<dual<S, Derivative>> {
     }
 
 private:
+    // A power and its derivative by its base, which is zero also far out, if the power is next to zero there.
+    static MYRIAD_FUNCTION D by_base(const S& power, const D& x, const S& exponent, const S& slope) {
+        const real tiny = real(0x1p+64) / largest_of<S>;
+        const S far = select(f::abs(exponent * power) < tiny, x.value, constant(real(0)));
+        return D(power, detail::flat_far_out(far, x.derivative, detail::scaled_unless_zero(slope, x.derivative)));
+    }
     // The derivative of a power by its exponent: zero where the power is, though its base has an infinite logarithm.
     static MYRIAD_FUNCTION Derivative of_exponent(const S& power, const S& base, const Derivative& d) {
         return detail::scaled_unless_zero(detail::weighted_unless_zero(power, f::log(base)), d);

@@ -231,14 +231,19 @@ MYRIAD_FUNCTION auto derivative_is_infinite(const partial<S>& d) {
     return detail::derivative_is_infinite(d.value);
 }
 
+/// Whether v has overflowed, or dv has and v nearly so.
+template <class S, class Derivative>
+MYRIAD_FUNCTION mask_of<S> has_overflown(const S& v, const Derivative& dv) {
+    const real_of<S> largest = largest_of<S>, huge = largest * real_of<S>(0x1p-32);
+    const S size = functions<S>::abs(v);
+    return (size > largest) | ((size > huge) & derivative_is_infinite(dv));
+}
+
 /// quotient' of quotient = u / v: (du - quotient dv) / v. Where v has overflowed, or dv has and v nearly so, dv does
 /// not count: 1 / (1 + exp(c x)) has the derivative zero for large c x, which is its limit, and not NaN or infinite.
 template <class S, class Derivative>
 MYRIAD_FUNCTION Derivative weighted_unless_overflown(const S& quotient, const S& v, const Derivative& dv) {
-    const real_of<S> largest = largest_of<S>, huge = largest * real_of<S>(0x1p-32);
-    const S size = functions<S>::abs(v);
-    const mask_of<S> overflown = (size > largest) | ((size > huge) & derivative_is_infinite(dv));
-    return select(overflown, derivative_of_constant<Derivative>::get(), Derivative(quotient * dv));
+    return select(detail::has_overflown(v, dv), derivative_of_constant<Derivative>::get(), Derivative(quotient * dv));
 }
 template <class S, int count>
 MYRIAD_FUNCTION partials<S, count> weighted_unless_overflown(const S& quotient, const S& v,
@@ -262,6 +267,26 @@ MYRIAD_FUNCTION partials<S, count> quotient_rule(const S& quotient, const partia
 template <class S, int count>
 MYRIAD_FUNCTION partials<S, count> quotient_rule(const S& quotient, const S& v, const partials<S, count>& dv) {
     return -detail::weighted_unless_overflown(quotient, v, dv) * detail::reciprocal_or_zero(v);
+}
+
+/// d, the derivative at x of a function that becomes flat faster than x grows, as tanh; but zero where x has
+/// overflowed, or dx has and x nearly so: the slope is zero there, and times infinity no number.
+template <class S, class Derivative>
+MYRIAD_FUNCTION Derivative flat_far_out(const S& x, const Derivative& dx, const Derivative& d) {
+    return select(detail::has_overflown(x, dx), derivative_of_constant<Derivative>::get(), d);
+}
+template <class S, int count>
+MYRIAD_FUNCTION partials<S, count> flat_far_out(const S& x, const partials<S, count>& dx, const partials<S, count>& d) {
+    return partials<S, count>::each([&](auto i) MYRIAD_LAMBDA { return detail::flat_far_out(x, dx.in[i], d.in[i]); });
+}
+template <class S, derivative_with_rules<S> D>
+MYRIAD_FUNCTION D flat_far_out(const S&, const D&, const D& d) {
+    return d;
+}
+/// The same at a dual number.
+template <class D, class Derivative>
+MYRIAD_FUNCTION Derivative flat_at(const D& x, const Derivative& d) {
+    return detail::flat_far_out(x.value, x.derivative, d);
 }
 
 /// a b + c

@@ -14,7 +14,8 @@ def parsed(text: str, model: Any, where: str) -> Any:
     """A formula as SBML's tree. Names of the model come before those that SBML's formulas know, as pi, which are told
     from them by their case."""
     if _has_base(text):
-        raise Refused(f"{where} is {text}, with a logarithm to a base: write log(x) / log(base)")
+        from petab.v1.math import sympify_petab
+        text = written(sympify_petab(text))
     libsbml = library()
     settings = libsbml.L3ParserSettings()
     settings.setParseLog(libsbml.L3P_PARSE_LOG_AS_LN)  # as PEtab means it
@@ -39,12 +40,11 @@ def _has_base(text: str) -> bool:
     return False
 
 
-def written(expression: Any, where: str) -> str:
-    """An expression of SymPy's, as the library of PEtab reads them in version 2, as a text."""
+def written(expression: Any) -> str:
+    """An expression of SymPy's, as the library of PEtab reads formulas, as a text."""
     import sympy
     from petab.v1.math import petab_math_str
-    if expression.has(sympy.sign):
-        raise Refused(f"{where} has sign(x): write piecewise(1, x > 0, -1, x < 0, 0)")
+    expression = expression.replace(sympy.sign, lambda x: sympy.Piecewise((1, x > 0), (-1, x < 0), (0, True)))
     # petab_math_str writes x^(1/2) as x ^ 1/2
     fractions = {r: sympy.Float(r, 17) for r in expression.atoms(sympy.Rational) if not r.is_Integer}
     text = str(petab_math_str(expression.xreplace(fractions)))

@@ -12,7 +12,7 @@ import numpy as np
 
 from ...base.errors import Error
 from ...gradients.forward import Forward, refuse_chosen, tolerances
-from ...inference.measurements import Given, Terms, added, normal_loss, normal_terms, sample_times
+from ...inference.measurements import Given, Terms, added, losses, sample_times, terms as noise_terms
 from ...inference.objective import Free, Objective
 from ...inference.priors import Prior, terms_of
 from ...models.components import Components
@@ -33,12 +33,14 @@ __all__ = ["PetabLikelihood"]
 
 @dataclass
 class Observed:
-    """An observable and its measurements: formulas of it and of its noise, the scale on which the noise is normally
-    distributed, the rows of the table of measurements, and what each sets the placeholders to, by component."""
+    """An observable and its measurements: formulas of it and of its noise, the distribution of that, "normal" or
+    "laplace", and the scale on which it has that, the rows of the table of measurements, and what each sets the
+    placeholders to, by component."""
 
     name: str
     value: Node
     noise: Node
+    distribution: str
     scale: str
     rows: Array
     placeholders: dict[str, Given]
@@ -149,8 +151,8 @@ class PetabLikelihood(Objective):
                 known = self._known(o, solved, sets)
                 mean, deviation = self._distribution(o, known)
                 by_mean, by_noise = self._derivatives(o, solved, known)
-                terms.append(normal_terms(o.scale, self._measured(o), mean, by_mean, deviation, by_noise,
-                                          self._estimated[o.name]))
+                terms.append(noise_terms[o.distribution](o.scale, self._measured(o), mean, by_mean, deviation, by_noise,
+                                                         self._estimated[o.name]))
             terms += [terms_of(prior, sets, k) for k, prior in self._experiment.priors]
         return added(terms)
 
@@ -169,7 +171,7 @@ class PetabLikelihood(Objective):
         sets = np.atleast_2d(self._sets(values))
         solved = self._solutions.of(sets, False)
         with np.errstate(all="ignore"):
-            found = -sum(normal_loss(o.scale, self._measured(o), *self._distribution(
+            found = -sum(losses[o.distribution](o.scale, self._measured(o), *self._distribution(
                 o, self._known(o, solved, sets))).sum(axis=1) for o in self._experiment.observables)
         return found[0] if np.ndim(values) == 1 else found
 
@@ -185,6 +187,8 @@ class PetabLikelihood(Objective):
     @property
     def why_no_residuals(self) -> str:
         """Why the loss is no sum of squares; empty if it is one."""
+        if any(o.distribution != "normal" for o in self._experiment.observables):
+            return "the noise has Laplace's distribution, and the likelihood is no sum of squares"
         return ("the noise depends on what is estimated, and the likelihood is no sum of squares"
                 if self.noise_is_estimated else "")
 
@@ -215,7 +219,8 @@ class PetabLikelihood(Objective):
         return known
 
     def _distribution(self, o: Observed, known: dict[Any, Array]) -> tuple[Array, Array]:
-        """Mean and standard deviation of the measurements of an observable, NaN where that is not positive."""
+        """Mean and standard deviation, or median and width, of the measurements of an observable, NaN where the second
+        is not positive."""
         shape = next(iter(known.values())).shape if known else (1, o.rows.size)
         mean, deviation = (np.broadcast_to(f, shape) for f in evaluate([o.value, o.noise], known))
         return mean, np.where(deviation > 0, deviation, np.nan)

@@ -12,7 +12,7 @@ import numpy as np
 
 from ...base.errors import Error
 from ...inference.fitting import Fit, minimised
-from ...inference.measurements import Given
+from ...inference.measurements import Given, losses
 from ...inference.objective import Free
 from ...inference.priors import Prior
 from ..sbml.math import Refused
@@ -170,8 +170,8 @@ class _Reader:
             model, self._free, [self._name_of(b, c) for b, c in self._pairs],
             of_components(of_experiments), self._experiment_of, times, sampled,
             self._measurements["measurement"].to_numpy(float),
-            [Observed(name, model.outputs[value], model.outputs[noise], scale, rows, of_components(placeholders))
-             for name, value, noise, scale, rows, placeholders in observed], self._priors, steady,
+            [Observed(name, model.outputs[value], model.outputs[noise], kind, scale, rows, of_components(placeholders))
+             for name, value, noise, kind, scale, rows, placeholders in observed], self._priors, steady,
             np.array([self._tables.begins.get(c, 0.0) for _, c in self._pairs]))
         nominal = self._parameters["nominalValue"] if "nominalValue" in self._parameters else {}
         return PetabProblem(experiment, {f.name: float(nominal.get(f.name, np.nan)) for f in self._free},
@@ -188,8 +188,10 @@ class _Reader:
             self._fixed[name] = float(row["nominalValue"])
             self._made.fix(name, self._fixed[name])
             return
-        prior, (least, most) = read_prior(name, row)
-        least, most = max(least, float(row["lowerBound"])), min(most, float(row["upperBound"]))
+        of_version_2 = row.get("prior")  # what read_prior_2 gives, or None
+        prior, (least, most) = of_version_2 or read_prior(name, row)
+        least, most = (pick(end, float(row[f"{which}Bound"])) if np.isfinite(row[f"{which}Bound"]) else end
+                       for pick, which, end in ((max, "lower", least), (min, "upper", most)))
         self._free.append(Free(name, (least, most, *(() if row["parameterScale"] == "lin" else ("log",)))))
         self._set_to_free[self._made.set(name, "the table of parameters")] = len(self._free) - 1
         if prior is not None:
@@ -270,12 +272,13 @@ class _Reader:
             raise Refused(f"{where}: {cell}, which is no number, nor a parameter with a value")
         return -1, known[name]
 
-    def _observed(self, name: str, row: Any) -> tuple[str, str, str, str, Array, dict[str, Given]]:
-        """A row of the table of observables: ids of the formulas of the observable and its noise, its scale, the rows
-        of its measurements and what they set placeholders to."""
+    def _observed(self, name: str, row: Any) -> tuple[str, str, str, str, str, Array, dict[str, Given]]:
+        """A row of the table of observables: ids of the formulas of the observable and its noise, the distribution of
+        that, its scale, the rows of its measurements and what they set placeholders to."""
         where = f"the observable table, row '{name}', column"
-        if _is_given(kind := row.get("noiseDistribution")) and kind != "normal":
-            raise Refused(f"{where} noiseDistribution: {kind}, whose likelihood is not smooth: use normal")
+        distribution = str(given) if _is_given(given := row.get("noiseDistribution")) else "normal"
+        if distribution not in losses:
+            raise Refused(f"{where} noiseDistribution: {distribution}; supported are {', '.join(losses)}")
         scale = given if _is_given(given := row.get("observableTransformation")) else "lin"
         table = self._measurements
         rows = np.flatnonzero(table["observableId"] == name)
@@ -287,7 +290,7 @@ class _Reader:
             raise Refused(f"{where} observableTransformation: {scale}, and not all measurements are positive")
         value = self._made.add(name, row["observableFormula"], f"{where} observableFormula")
         noise = self._made.add(f"noise_of_{name}", row["noiseFormula"], f"{where} noiseFormula")
-        return name, value, noise, str(scale), rows, placeholders
+        return name, value, noise, distribution, str(scale), rows, placeholders
 
     def _placeholders(self, name: str, ids: list[str], column: str, rows: Array) -> dict[str, Given]:
         """What measurements set the placeholders of an observable to."""

@@ -15,10 +15,10 @@ from ...base.errors import Error
 from ..sbml.math import Refused
 from .formulas import written
 from .periods import Period, Periods
+from .priors import read_prior_2
 
-_scales = {"normal": "lin", "log-normal": "log"}
-_priors = {"normal": "normal", "laplace": "laplace", "uniform": "uniform", "log-normal": "logNormal",
-           "log-laplace": "logLaplace"}
+_noise = {"normal": ("normal", "lin"), "log-normal": ("normal", "log"), "laplace": ("laplace", "lin"),
+          "log-laplace": ("laplace", "log")}
 
 
 @dataclass
@@ -100,7 +100,7 @@ def _check(problem: Any) -> None:
 def _periods(problem: Any) -> dict[str, list[Period]]:
     """The periods of each experiment, in the order of time; and one of measurements without an experiment."""
     found = {e.id: [Period(float(p.time), {
-        c.target_id: written(c.target_value, f"the condition table, target {c.target_id}")
+        c.target_id: written(c.target_value)
         for c in problem.get_changes_for_period(p)}) for p in e.sorted_periods] for e in problem.experiments}
     if any(m.experiment_id is None for m in problem.measurements):
         found[""] = []
@@ -111,23 +111,25 @@ def _periods(problem: Any) -> dict[str, list[Period]]:
     return found
 
 
+def _is_at_rest(periods: Sequence[Period]) -> bool:
+    """Whether an experiment is a steady state alone, which it has at all times."""
+    return np.isinf(periods[-1].time)
+
+
 def _check_times(problem: Any, name: str, times: Sequence[float]) -> None:
     """Refuses measurements of an experiment at times that it does not have, or whose value is not known."""
-    begin = next((t for t in times if np.isfinite(t)), None)
+    begin = next((t for t in times if np.isfinite(t)), -np.inf)
     of_events = problem.model.sbml_model.getNumEvents() > 0
     for m in problem.measurements:
         time = float(m.time)
         if (m.experiment_id or "") != name:
             continue
         where = f"the measurement table, experiment '{name}' at {time:g}"
-        if begin is None:
-            raise Refused(f"{where}: the experiment is a steady state alone, at the time -inf: give it a period that "
-                          "begins at a time")
         if time < begin:
             raise Refused(f"{where}: it begins at {begin:g}")
-        if np.isinf(time) and (of_events or times[-1] != 0):
-            raise Refused(f"{where}: a steady state of a model with events, or of an experiment with a period that "
-                          "begins at another time than 0, is not supported")
+        if np.isinf(time) and np.isfinite(begin) and (of_events and len(times) > 1 or times[-1] != 0):
+            raise Refused(f"{where}: a steady state after another one of a model with events, or of an experiment with "
+                          "a period that begins at another time than 0, is not supported")
 
 
 def _experiments(of_experiments: Mapping[str, Sequence[Period]], made: Periods, measured: Any) -> tuple[Any, Any]:
@@ -139,16 +141,16 @@ def _experiments(of_experiments: Mapping[str, Sequence[Period]], made: Periods, 
     later = {name: [p.time for p in periods[1:]] for name, periods in of_experiments.items()}
     for number, (name, periods) in enumerate(of_experiments.items()):
         rows[f"{name}_"] = made.settings(number)
-        if np.isinf(periods[0].time):
+        if np.isinf(periods[0].time) and not _is_at_rest(periods):
             before[name] = f"{name}_at_rest"
             rows[f"{name}_at_rest"] = made.settings(number, at_rest=True)
     table = pd.DataFrame(list(rows.values()), index=list(rows))
     ids = _ids(measured)
     begin = {name: next((p.time for p in periods if np.isfinite(p.time)), 0.0)
              for name, periods in of_experiments.items()}
-    sampled = [t + 1e-12 * max(abs(t), t - begin[e]) if t in later[e] else t
-               for e, t in zip(ids, measured["time"].astype(float))]
-    measurements = measured.assign(simulationConditionId=[f"{e}_" for e in ids], sampled=sampled,
+    times = [np.inf if _is_at_rest(of_experiments[e]) else t for e, t in zip(ids, measured["time"].astype(float))]
+    sampled = [t + 1e-12 * max(abs(t), t - begin[e]) if t in later[e] else t for e, t in zip(ids, times)]
+    measurements = measured.assign(simulationConditionId=[f"{e}_" for e in ids], time=times, sampled=sampled,
                                    preequilibrationConditionId=[before[e] for e in ids])
     for column in ("observableParameters", "noiseParameters"):
         if column in measurements:
@@ -168,18 +170,18 @@ def _observables(problem: Any) -> Any:
     rows = []
     for o in problem.observables:
         kind = str(getattr(o.noise_distribution, "value", o.noise_distribution))
-        if kind not in _scales:
-            raise Refused(f"the observable table, row '{o.id}', column noiseDistribution: {kind}, whose likelihood is "
-                          "not smooth: use normal or log-normal")
+        if kind not in _noise:
+            raise Refused(f"the observable table, row '{o.id}', column noiseDistribution: {kind}; supported are "
+                          f"{', '.join(_noise)}")
+        distribution, scale = _noise[kind]
         names = {Symbol(str(p), real=True): Symbol(f"{what}Parameter{i}_{o.id}", real=True)
                  for what, of in (("observable", o.observable_placeholders), ("noise", o.noise_placeholders))
                  for i, p in enumerate(of or (), 1)}
         value = o.formula.subs(names)
         noise = o.noise_formula.subs(names).subs({Symbol(o.id, real=True): value})
-        where = f"the observable table, row '{o.id}'"
-        rows.append({"observableId": o.id, "observableFormula": written(value, where),
-                     "noiseFormula": written(noise, where), "noiseDistribution": "normal",
-                     "observableTransformation": _scales[kind]})
+        rows.append({"observableId": o.id, "observableFormula": written(value),
+                     "noiseFormula": written(noise), "noiseDistribution": distribution,
+                     "observableTransformation": scale})
     return pd.DataFrame(rows).set_index("observableId")
 
 
@@ -187,16 +189,12 @@ def _parameters(problem: Any) -> Any:
     """The table of parameters, on a linear scale."""
     import pandas as pd
     rows = []
+    has_priors = any(p.estimate and p.prior_distribution for p in problem.parameters)
     for p in problem.parameters:
         row: dict[str, Any] = {"parameterId": p.id, "parameterScale": "lin", "lowerBound": p.lb, "upperBound": p.ub,
                                "nominalValue": np.nan if p.nominal_value is None else p.nominal_value,
-                               "estimate": bool(p.estimate), "objectivePriorType": "", "objectivePriorParameters": ""}
-        kind = getattr(p.prior_distribution, "value", p.prior_distribution)
-        if p.estimate and kind:
-            if kind not in _priors:
-                raise Refused(f"the table of parameters, row '{p.id}', column priorDistribution: {kind}; supported are "
-                              f"{', '.join(_priors)}")
-            row |= {"objectivePriorType": _priors[kind],
-                    "objectivePriorParameters": ";".join(repr(float(v)) for v in p.prior_parameters)}
+                               "estimate": bool(p.estimate), "prior": None}
+        if p.estimate and has_priors:
+            row["prior"] = read_prior_2(p)
         rows.append(row)
     return pd.DataFrame(rows).set_index("parameterId")

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -13,7 +13,7 @@ import numpy as np
 from ...base.errors import Error
 from ...solving.solve import solve
 from ..cellml.model import read_cellml
-from ..sbml.model import read_sbml
+from ..sbml.model import SbmlModel, read_sbml
 from .archive import Files, xml_of
 
 if TYPE_CHECKING:
@@ -33,12 +33,19 @@ class TimeCourse:
     begin: float  #: the time of the initial values
     times: Array  #: of the results
     algorithm: str  #: the identifier of the ontology KiSAO, as "KISAO:0000019"; not followed
+    changes: dict[str, Array] = field(default_factory=dict)  #: what a repeated task sets, one value for each repetition
 
     def solve(self, sweep: Any = None, **options: Any) -> Run:
-        """Integrates the model, by default once with its own values, and samples all states at the times. Arguments
-        are those of `my.solve`."""
+        """Integrates the model, by default once with its own values, or with those of a repeated task as instances of
+        a sweep, and samples all states at the times. Arguments are those of `my.solve`."""
+        if sweep is None:
+            known = {self.model.aliases.get(name, name): values for name, values in self.changes.items()} if isinstance(
+                self.model, SbmlModel) else self.changes
+            sweep = {name: values for name, values in known.items() if name in self.model.parameters}
+            starts = {name: values for name, values in known.items() if name not in sweep}
+            options = {"start": starts, **options} if starts else options
         times = {"time": (self.begin, float(self.times[-1])), "samples": self.times}
-        return solve(self.model, sweep, **{**times, **options})
+        return solve(self.model, sweep or None, **{**times, **options})
 
 
 def read_sedml(path: Path | str) -> dict[str, TimeCourse]:
@@ -47,10 +54,12 @@ def read_sedml(path: Path | str) -> dict[str, TimeCourse]:
 
     Models are files of SBML and CellML beside the document or in the archive, or other models of the document; changes
     of attributes are made in those of SBML. `my.read_sedml("study.omex")["task1"].solve(rtol=1e-9)` is the simulation
-    as it is described; a sweep and other options are those of `my.solve`. The algorithm is named and not followed.
+    as it is described; a sweep and other options are those of `my.solve`. A repeated task of one time course is a sweep
+    of what it sets. The algorithm is named and not followed.
 
     Raises `my.Error` with task or model for what is not supported: simulations that are no uniform time courses,
-    repeated tasks, models that are elsewhere, changes of other kinds than attributes, and what is not valid.
+    repeated tasks that compute values or go on from where they were, models that are elsewhere, changes of other kinds
+    than attributes, and what is not valid.
     """
     files = Files(path)
     documents = files.documents()
@@ -61,6 +70,9 @@ def read_sedml(path: Path | str) -> dict[str, TimeCourse]:
         for name, course in _Document(files, document).courses().items():
             found[name if name not in found else f"{document}:{name}"] = course
     return found
+
+
+_most_repetitions = 10_000_000
 
 
 def _tag(element: ElementTree.Element) -> str:
@@ -89,13 +101,62 @@ class _Document:
                 if _tag(one) not in ("notes", "annotation")]
 
     def courses(self) -> dict[str, TimeCourse]:
-        """The time courses by the names of their tasks."""
-        return {task.get("id", ""): self._course(task) for task in self._listed("listOfTasks")}
+        """The time courses by the names of their tasks, those that others repeat too."""
+        tasks = {task.get("id", ""): task for task in self._listed("listOfTasks")}
+        found = {name: self._course(task) for name, task in tasks.items() if _tag(task) != "repeatedTask"}
+        return {name: found[name] if name in found else self._repeated(task, found) for name, task in tasks.items()}
+
+    def _repeated(self, task: ElementTree.Element, courses: dict[str, TimeCourse]) -> TimeCourse:
+        """A time course that is repeated with other values."""
+        name, of_tasks = task.get("id", ""), self._listed("listOfSubTasks", task)
+        wanted = of_tasks[0].get("task", "") if len(of_tasks) == 1 else ""
+        if wanted not in courses:
+            self._refuse(f"the repeated task '{name}' has {len(of_tasks)} tasks, '{wanted}': only one <task> is "
+                         "repeated")
+        if task.get("resetModel", "true") not in ("true", "1"):
+            self._refuse(f"the repeated task '{name}' goes on from where the last repetition ended: set resetModel")
+        ranges = {one.get("id", ""): self._values(one, name) for one in self._listed("listOfRanges", task)}
+        count = len(ranges.get(task.get("range", ""), ()))
+        changes: dict[str, Array] = {}
+        for change in self._listed("listOfChanges", task) or self._listed("listOfSetValues", task):
+            symbols = [(one.text or "").strip() for math in change for one in math if _tag(math) == "math"]
+            of_id = re.search(r"""\[@id=(['"])([^'"]+)\1\](/@\w+)?$""", change.get("target", "").strip())
+            if len(symbols) != 1 or symbols[0] not in ranges or of_id is None:
+                self._refuse(f"the repeated task '{name}' sets {change.get('target')} to a formula: only values of a "
+                             "range, <ci>, of a parameter or a species, [@id='k'], are read")
+            changes[of_id.group(2)] = ranges[symbols[0]][:count]
+        if not (changes and count) or any(len(values) != count for values in changes.values()):
+            self._refuse(f"the repeated task '{name}' sets nothing, or has no range with a value for each repetition")
+        unknown = [one for one in changes if one not in self._known(courses[wanted].model)]
+        if unknown:
+            self._refuse(f"the repeated task '{name}' sets '{unknown[0]}', which is no parameter and no species")
+        return replace(courses[wanted], name=name, changes=changes)
+
+    def _known(self, model: RecordedModel) -> set[str]:
+        """What a repeated task can set."""
+        return {*model.parameters, *model.states, *(model.aliases if isinstance(model, SbmlModel) else ())}
+
+    def _values(self, one: ElementTree.Element, name: str) -> Array:
+        """The values of a range."""
+        if _tag(one) == "vectorRange":
+            return np.array([self._number_of(value.text or "", f"a <value> of '{name}'") for value in one])
+        if _tag(one) != "uniformRange":
+            self._refuse(f"the repeated task '{name}' has a <{_tag(one)}>: only uniform and vector ranges are read")
+        first, last = (self._number(one, end) for end in ("start", "end"))
+        steps = self._number(one, "numberOfSteps" if "numberOfSteps" in one.attrib else "numberOfPoints")
+        if not 1 <= steps <= _most_repetitions or steps != int(steps):
+            self._refuse(f"the repeated task '{name}' has a range of {steps:g} steps")
+        if one.get("type", "linear") == "linear":
+            return np.linspace(first, last, int(steps) + 1)
+        if not (first > 0 and last > 0):
+            self._refuse(f"the repeated task '{name}' has a logarithmic range from {first:g} to {last:g}")
+        return np.geomspace(first, last, int(steps) + 1)
 
     def _course(self, task: ElementTree.Element) -> TimeCourse:
         name, wanted = task.get("id", ""), task.get("simulationReference", "")
         if _tag(task) != "task":
-            self._refuse(f"task '{name}' is a <{_tag(task)}>, and only a <task> is read: sweep the values that it sets")
+            self._refuse(f"task '{name}' is a <{_tag(task)}>, and only a <task> or a <repeatedTask> is read: sweep the "
+                         "values that it sets")
         if wanted not in self._simulations:
             self._refuse(f"task '{name}' names the simulation '{wanted}', which is not there")
         simulation = self._simulations[wanted]
@@ -114,11 +175,13 @@ class _Document:
                           np.linspace(first, last, int(steps) + 1), algorithm)
 
     def _number(self, element: ElementTree.Element, attribute: str) -> float:
-        text = element.get(attribute, "")
+        return self._number_of(element.get(attribute, ""), f"{attribute} of '{element.get('id')}'")
+
+    def _number_of(self, text: str, what: str) -> float:
         try:
             return float(text)
         except ValueError:
-            self._refuse(f"the simulation '{element.get('id')}' has {attribute}=\"{text}\": give a number")
+            self._refuse(f"{what} is \"{text}\": give a number")
 
     # -- Models --------------------------------------------------------------------------------------------------------
 
