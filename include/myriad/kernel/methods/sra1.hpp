@@ -10,7 +10,8 @@
 namespace myriad {
 
 /// A Runge-Kutta method for additive noise, for which Ito and Stratonovich equations are the same: fixed steps, strong
-/// order 3/2, weak order 2. Source: Roessler, SIAM J. Numer. Anal. 48 (2010) 922-952.
+/// order 3/2, weak order 2, or with `adaptive<sra1>` adaptive ones. Source: Roessler, SIAM J. Numer. Anal. 48 (2010)
+/// 922-952; the error estimate: Rackauckas and Nie, Discrete Contin. Dyn. Syst. B 22 (2017) 2731-2761.
 struct sra1 {
     static constexpr int stages = 2;
     static constexpr int embedded_order = 0;
@@ -19,11 +20,13 @@ struct sra1 {
     static constexpr double weak_order = 2;                      ///< with which means over paths converge
     static constexpr noise_taken noise = noise_taken::additive;  ///< which it takes
     static constexpr bool uses_integrals = true;                 ///< of the path over each step
+    static constexpr bool estimates_error = true;                ///< for `adaptive`
 
-    /// The state at t1, which is t + h up to rounding; `slope` is the drift at (t, y).
-    template <class Equation, class S, detail::extent n>
+    /// The state at t1, which is t + h up to rounding; `slope` is the drift at (t, y). If asked for the `error`, that of
+    /// the drift and that of the noise add up.
+    template <class Equation, class S, detail::extent n, class... Error>
     MYRIAD_FUNCTION static vec<S, n> step(const Equation& equation, const S& t, const S& h, const S& t1,
-                                          const vec<S, n>& y, const vec<S, n>& slope) {
+                                          const vec<S, n>& y, const vec<S, n>& slope, Error&... error) {
         using R = real_of<S>;
         // of the mean of W - W(t) over the step, and of what the increment has more
         const auto mean = equation.mean_increments(h);
@@ -40,6 +43,11 @@ struct sra1 {
         for (int c = 0; c < MYRIAD_LENGTH(n); ++c)
             y1[c] =
                 y[c] + fma(h, fma(third, slope[c], two_thirds * slope_inside[c]), whole[c] + (at_begin[c] - at_end[c]));
+        if constexpr (sizeof...(Error) != 0) {
+            MYRIAD_UNROLL_UP_TO(64, 16)
+            for (int c = 0; c < MYRIAD_LENGTH(n); ++c)
+                ((error[c] = fma(two_thirds, abs(h * (slope_inside[c] - slope[c])), abs(at_begin[c] - at_end[c]))), ...);
+        }
         return y1;
     }
 };

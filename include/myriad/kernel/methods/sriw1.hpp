@@ -9,8 +9,10 @@
 
 namespace myriad {
 
-/// A Runge-Kutta method for Ito equations with diagonal noise: fixed steps, strong order 3/2. It needs no derivatives.
-/// Source: Roessler, SIAM J. Numer. Anal. 48 (2010) 922-952, scheme SRIW1; its SRI1 is another, of order 1.
+/// A Runge-Kutta method for Ito equations with diagonal noise: strong order 3/2, with fixed steps, or with
+/// `adaptive<sriw1>` adaptive ones. It needs no derivatives. Source: Roessler, SIAM J. Numer. Anal. 48 (2010) 922-952,
+/// scheme SRIW1; its SRI1 is another, of order 1. The error estimate: Rackauckas and Nie, Discrete Contin. Dyn. Syst. B
+/// 22 (2017) 2731-2761.
 struct sriw1 {
     static constexpr int stages = 2;
     static constexpr int embedded_order = 0;
@@ -19,11 +21,13 @@ struct sriw1 {
     static constexpr double weak_order = 1.5;                    ///< with which means over paths converge
     static constexpr noise_taken noise = noise_taken::diagonal;  ///< which it takes
     static constexpr bool uses_integrals = true;                 ///< of the path over each step
+    static constexpr bool estimates_error = true;                ///< for `adaptive`
 
-    /// The state at t1, which is t + h up to rounding; `slope` is the drift at (t, y).
-    template <class Equation, class S, detail::extent n>
+    /// The state at t1, which is t + h up to rounding; `slope` is the drift at (t, y). If asked for the `error`, that of
+    /// the drift and that of the noise add up.
+    template <class Equation, class S, detail::extent n, class... Error>
     MYRIAD_FUNCTION static vec<S, n> step(const Equation& equation, const S& t, const S& h, const S& t1,
-                                          const vec<S, n>& y, const vec<S, n>& slope) {
+                                          const vec<S, n>& y, const vec<S, n>& slope, Error&... error) {
         using R = real_of<S>;
         constexpr auto m = Equation::m;
         const S quarter(R(0.25)), half(R(0.5)), third(R(1.0 / 3)), length = abs(h), root = sqrt(length);
@@ -68,6 +72,24 @@ struct sriw1 {
         for (int c = 0; c < MYRIAD_LENGTH(n); ++c)
             y1[c] = y[c] + (fma(h * third, fma(S(R(2)), slope_inside[c], slope[c]), first_noise[c] + second_noise[c]) +
                             (third_noise[c] + fourth_noise[c]));
+        if constexpr (sizeof...(Error) != 0) {
+            // What I(1,0) and I(1,1,1) add.
+            MYRIAD_UNROLL_UP_TO(64, 16)
+            for (int j = 0; j < MYRIAD_LENGTH(m); ++j) {
+                const S thrice = of_fourth[j];
+                of_first[j] = S(R(2)) * (mean[j] - thrice);
+                of_second[j] = third * fma(S(R(-4)), mean[j], S(R(5)) * thrice);
+                of_third[j] = S(R(-2.0 / 3)) * (mean[j] + thrice);
+            }
+            const vec<S, n> first = equation.times(t, y, of_first),
+                            second_part = equation.times(t_quarter, second, of_second),
+                            third_part = equation.times(t1, last, of_third);
+            MYRIAD_UNROLL_UP_TO(64, 16)
+            for (int c = 0; c < MYRIAD_LENGTH(n); ++c)
+                ((error[c] = fma(S(R(2.0 / 3)), abs(h * (slope_inside[c] - slope[c])),
+                                 abs((first[c] + second_part[c]) + (third_part[c] + fourth_noise[c])))),
+                 ...);
+        }
         return y1;
     }
 };

@@ -7,7 +7,7 @@
 #include "myriad/kernel/model/jacobian.hpp"
 #include "myriad/kernel/model/lane.hpp"
 #include "myriad/kernel/model/noise.hpp"
-#include "myriad/kernel/model/path_integral.hpp"
+#include "myriad/kernel/model/path_tree.hpp"
 #include "myriad/kernel/model/wiener_path.hpp"
 #include "myriad/kernel/scalar/dual.hpp"
 #include "myriad/kernel/scalar/select.hpp"
@@ -26,6 +26,22 @@ struct trial_step<Method, S, n> {
     MYRIAD_FUNCTION vec<S, n>& slope_start() { return slope; }
     MYRIAD_FUNCTION const vec<S, n>& slope_start() const { return slope; }
 };
+
+/// The same with an estimate of its error.
+template <class Method, class S, extent n>
+requires(stochastic_method<Method> && Method::embedded_order > 0) struct trial_step<Method, S, n> {
+    vec<S, n> slope, y, error;
+    tree_interval<S> noise;
+
+    MYRIAD_FUNCTION vec<S, n>& slope_start() { return slope; }
+    MYRIAD_FUNCTION const vec<S, n>& slope_start() const { return slope; }
+};
+template <class Method, int row, class S>
+requires stochastic_method<Method> MYRIAD_FUNCTION S error_factor(const S&) { return S(real_of<S>(1)); }
+template <class Method, int row, class S, extent n>
+requires stochastic_method<Method> MYRIAD_FUNCTION S error_sum(const trial_step<Method, S, n>& trial, int component) {
+    return trial.error[component];
+}
 
 /// Of a Rosenbrock method what gives it the matrix I / h - J.
 struct whole_step {
@@ -136,7 +152,11 @@ template <class Method, class Model, class S>
 MYRIAD_FUNCTION void stochastic_step(const S& t, const S& h, const S& t1, const vec<S, n_state<Model>>& y,
                                      const inputs<Model, S>& p, trial_step<Method, S, n_state<Model>>& trial) {
     constexpr auto m = n_wiener<Model>;
-    if constexpr (uses_integrals<Method>) {
+    if constexpr (Method::embedded_order > 0) {
+        const increments_with_integrals<S, m> of_path = detail::tree_integrals<m>(trial.noise);
+        const noisy_equation<Model, S, true> equation{p, of_path.increment, of_path.integral};
+        trial.y = Method::step(equation, t, h, t1, y, trial.slope, trial.error);
+    } else if constexpr (uses_integrals<Method>) {
         const increments_with_integrals<S, m> of_path = detail::path_integrals<m>(trial.noise);
         const noisy_equation<Model, S, true> equation{p, of_path.increment, of_path.integral};
         trial.y = Method::step(equation, t, h, t1, y, trial.slope);
