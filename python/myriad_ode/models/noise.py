@@ -13,7 +13,8 @@ from ..symbolic.expression import constant
 from ..symbolic.node import Node, text
 from ..symbolic.numbers import is_whole
 from .delays import refuse_method
-from .methods import additive_noise, default, diagonal_noise, methods, pathless, stiff, stochastic
+from .methods import (adaptive_on_paths, additive_noise, default, diagonal_noise, fixed_step, halving, methods, pathless,
+                      stiff, stochastic)
 
 if TYPE_CHECKING:
     from ..symbolic.expression import Expression
@@ -217,6 +218,24 @@ def method_for(model: AnyModel, method: str | None, precision: str) -> str:
             raise Error(f"{method} takes noise whose factor of a state depends on no other state, and that of "
                         f"{both[0]} depends on {both[1]}: {otherwise}")
     return method
+
+
+def control_for(model: AnyModel, method: str, control: str | Sequence[str],
+                options: Any) -> str | Sequence[str]:
+    """The control of a call: by halving where a method for noise has tolerances and no step. Refuses a method for fixed
+    steps without one."""
+    if method not in fixed_step or options.step is not None:
+        return control
+    if method not in adaptive_on_paths:
+        raise Error(f"{method} takes fixed steps: give step=")
+    if all(isinstance(one, float) and one == 1e-8 for one in (options.rtol, options.atol)):
+        raise Error(f"{method} takes fixed steps or adaptive ones: give step=, or rtol= and atol=")
+    if control:
+        raise Error("adaptive steps along a path are halved and doubled, and have no other control: leave out control=")
+    if model.has_noise is not None and (model.events or model.summaries):
+        raise Error(f"the model's {'events' if model.events else 'extrema'} are found in fixed steps alone yet: give "
+                    "step= instead of tolerances")
+    return (halving,)
 
 
 def refuse_options_of_paths(method: str, seed: int, noise_step: float) -> None:

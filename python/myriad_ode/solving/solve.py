@@ -21,8 +21,8 @@ from ..models.any_model import AnyModel
 from ..models.components import Components
 from ..models.delays import refuse_history_steps, refuse_method
 from ..models.located_switches import note_on_sliding
-from ..models.methods import fixed_step, method_type
-from ..models.noise import count_of_paths, method_for, refuse_options_of_paths
+from ..models.methods import method_type
+from ..models.noise import control_for, count_of_paths, method_for, refuse_options_of_paths
 from ..models.once_per_phase import prepared
 from ..models.sensitivities import WithSensitivities, note_on, with_sensitivities
 from ..results.no_instances import EmptyEnsemble, EmptyReport, kernel as no_kernel
@@ -85,11 +85,10 @@ class Call:
         if isinstance(self.model, WithSensitivities):
             options = with_derivatives(self.model, options, self.components)
         self.options = options
+        self.control = control_for(self.model, self.method, self.control, options)
         method_type(self.method, self.control, options.samples is not None)  # refuses what does not exist
         refuse_options_of_paths(self.method, options.seed, options.noise_step)
         refuse_history_steps(self.model, options.history_steps)
-        if self.method in fixed_step and options.step is None:
-            raise Error(f"{self.method} takes fixed steps: give step=")
         self.core_options, self.recorded, self.sampled = make_options(self.components, self.count, options)
 
     def prepare(self, devices: Sequence[str], interpreted: bool | None) -> None:

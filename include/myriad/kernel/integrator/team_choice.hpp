@@ -20,7 +20,13 @@ inline constexpr bool is_of_units<coupled_units<Unit, units>> = true;
 /// Whether a team can integrate a model by a method. Others are integrated by one thread per instance.
 template <class Model, class Method>
 constexpr bool runs_in_teams() {
-    return is_of_units<Model> && !rosenbrock_method<Method> && !has_delays<Model>;
+    if constexpr (stochastic_method<Method>) {
+        // Others evaluate factors of one process after the other, or find events by factors of all.
+        constexpr bool by_states = Method::strong_order != 0 && !uses_jacobian<Method>;
+        return is_of_units<Model> && by_states && !has_events<Model> && !has_summaries<Model>;
+    } else {
+        return is_of_units<Model> && !rosenbrock_method<Method> && !has_delays<Model>;
+    }
 }
 
 /// Most states that one thread takes. Lorenz 96 by tsitouras_5, 131 072 instances, NVIDIA H100, ms for one thread and

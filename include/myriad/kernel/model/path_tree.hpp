@@ -61,6 +61,24 @@ MYRIAD_CALLED_FUNCTION increments_with_integrals<S, normals_per_block<real_of<S>
     return found;
 }
 
+/// Over a step, of which lanes are nodes or not.
+template <class S>
+MYRIAD_FUNCTION increments_with_integrals<S, normals_per_block<real_of<S>>> tree_integrals_of_group(
+    const tree_interval<S>& over, const mask_of<S>& is_node, int group) {
+    constexpr int per_group = normals_per_block<real_of<S>>;
+    increments_with_integrals<S, per_group> of_group{};
+    if (any(is_node)) of_group = detail::integrals_of_node<S>(over, group);
+    if (MYRIAD_UNLIKELY(!all(is_node))) {
+        const increments_with_integrals<S, per_group> other = detail::integrals_between<S>(over, group);
+        MYRIAD_UNROLL
+        for (int k = 0; k < per_group; ++k) {
+            of_group.increment[k] = select(is_node, of_group.increment[k], other.increment[k]);
+            of_group.integral[k] = select(is_node, of_group.integral[k], other.integral[k]);
+        }
+    }
+    return of_group;
+}
+
 /// `path_integrals` over steps most of which are nodes. The same bits whatever the steps of neighbours are.
 template <int processes, class S>
 MYRIAD_FUNCTION increments_with_integrals<S, processes> tree_integrals(const tree_interval<S>& over) {
@@ -70,16 +88,7 @@ MYRIAD_FUNCTION increments_with_integrals<S, processes> tree_integrals(const tre
     increments_with_integrals<S, processes> all_of;
     static_for<0, (processes + per_group - 1) / per_group>([&](auto g) MYRIAD_LAMBDA {
         constexpr int group = decltype(g)::value;
-        increments_with_integrals<S, per_group> of_group{};
-        if (any(is_node)) of_group = detail::integrals_of_node<S>(over, group);
-        if (MYRIAD_UNLIKELY(!all(is_node))) {
-            const increments_with_integrals<S, per_group> other = detail::integrals_between<S>(over, group);
-            MYRIAD_UNROLL
-            for (int k = 0; k < per_group; ++k) {
-                of_group.increment[k] = select(is_node, of_group.increment[k], other.increment[k]);
-                of_group.integral[k] = select(is_node, of_group.integral[k], other.integral[k]);
-            }
-        }
+        const auto of_group = detail::tree_integrals_of_group(over, is_node, group);
         MYRIAD_UNROLL
         for (int k = 0; k < per_group; ++k) {
             if (group * per_group + k >= processes) continue;

@@ -7,8 +7,7 @@
 #include "myriad/kernel/model/jacobian.hpp"
 #include "myriad/kernel/model/lane.hpp"
 #include "myriad/kernel/model/noise.hpp"
-#include "myriad/kernel/model/path_tree.hpp"
-#include "myriad/kernel/model/wiener_path.hpp"
+#include "myriad/kernel/model/path_of_team.hpp"
 #include "myriad/kernel/scalar/dual.hpp"
 #include "myriad/kernel/scalar/select.hpp"
 #include "myriad/kernel/stepper/explicit_rk.hpp"
@@ -151,17 +150,16 @@ struct noisy_equation {
 template <class Method, class Model, class S>
 MYRIAD_FUNCTION void stochastic_step(const S& t, const S& h, const S& t1, const vec<S, n_state<Model>>& y,
                                      const inputs<Model, S>& p, trial_step<Method, S, n_state<Model>>& trial) {
-    constexpr auto m = n_wiener<Model>;
     if constexpr (Method::embedded_order > 0) {
-        const increments_with_integrals<S, m> of_path = detail::tree_integrals<m>(trial.noise);
+        const auto of_path = detail::integrals_of_model<Model>(trial.noise);
         const noisy_equation<Model, S, true> equation{p, of_path.increment, of_path.integral};
         trial.y = Method::step(equation, t, h, t1, y, trial.slope, trial.error);
     } else if constexpr (uses_integrals<Method>) {
-        const increments_with_integrals<S, m> of_path = detail::path_integrals<m>(trial.noise);
+        const auto of_path = detail::integrals_of_model<Model>(trial.noise);
         const noisy_equation<Model, S, true> equation{p, of_path.increment, of_path.integral};
         trial.y = Method::step(equation, t, h, t1, y, trial.slope);
     } else {
-        const noisy_equation<Model, S> equation{p, detail::path_increments<m>(trial.noise), {}};
+        const noisy_equation<Model, S> equation{p, detail::increments_of_model<Model>(trial.noise), {}};
         trial.y = Method::step(equation, t, h, t1, y, trial.slope);
     }
 }
