@@ -164,8 +164,6 @@ def refuse_parts(model: Any) -> None:
         instead = ("an event and an extreme would not know of each other within a step; take extrema in after_step")
     elif model.mass_matrix is not None:
         what, instead = "mass matrix", "divide its equations by what stands before their derivatives"
-    elif model.units_of_states is not None:
-        what, instead = "coupled units", "name the states of each unit"
     elif model.writes_time_domain:
         what, instead = "hooks that assign t_begin or t_end", "its paths count time from t_begin"
     if what:
