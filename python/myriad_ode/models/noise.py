@@ -222,6 +222,8 @@ def control_for(model: AnyModel, method: str, control: str | Sequence[str],
                 options: Any) -> str | Sequence[str]:
     """The control of a call: by halving where a method for noise has tolerances and no step. Refuses a method for fixed
     steps without one."""
+    if halving in ((control,) if isinstance(control, str) else control):
+        raise Error(f"there is no step-size control {halving!r}: leave out step=, and give rtol= and atol=")
     if method not in fixed_step or options.step is not None:
         return control
     if method not in adaptive_on_paths:

@@ -6,7 +6,7 @@ from __future__ import annotations
 import dataclasses
 import functools
 import time as clock
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -25,6 +25,7 @@ from ..models.methods import method_type
 from ..models.noise import control_for, count_of_paths, method_for, refuse_options_of_paths
 from ..models.once_per_phase import prepared
 from ..models.sensitivities import WithSensitivities, note_on, with_sensitivities
+from ..models.units import spread
 from ..results.no_instances import EmptyEnsemble, EmptyReport, kernel as no_kernel
 from ..results.past_states import PastStates
 from ..results.report import Interrupted
@@ -75,7 +76,8 @@ class Call:
                size: int | None, options: Options, paths: int | None = None) -> None:
         """Takes inputs and options, and refuses those that do not fit."""
         if paths is not None:
-            sweep = with_paths(sweep, count_of_paths(self.model, paths))
+            given = spread(sweep, "the sweep", None) if isinstance(sweep, Mapping) else sweep
+            sweep = with_paths(given, count_of_paths(self.model, paths))
         values = given_values(self.components, sweep, start)
         if isinstance(self.model, WithSensitivities):
             self.components.defaults = {**self.components.defaults, **start_derivatives(self.model, values)}
