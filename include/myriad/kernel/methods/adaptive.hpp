@@ -23,6 +23,7 @@ struct adaptive : Method {
     static_assert(detail::estimates_error<Method>,
                   "this method has no error estimate for adaptive steps: use adaptive<sra1> for additive noise or "
                   "adaptive<sriw1> for diagonal noise");
+    static constexpr int stages = Method::stages + 1;  ///< one for the estimate
     static constexpr int embedded_order = 1;  ///< strong order of the solution with which that of the step is compared
 };
 

@@ -89,6 +89,23 @@ struct noisy_equation {
         }
         return sum;
     }
+    /// The deviations of g dW if that of each dW is the same.
+    MYRIAD_FUNCTION vec<S, n> spread(const S& t, const vec<S, n>& y, const S& deviation) const {
+        const auto g = Model::template diffusion<S>(t, y, p);
+        vec<S, n> found;
+        MYRIAD_UNROLL_UP_TO(64, 16)
+        for (int c = 0; c < MYRIAD_LENGTH(n); ++c) {
+            if constexpr (has_general_noise<Model>) {
+                S squares = g[c][0] * g[c][0];
+                MYRIAD_UNROLL_UP_TO(64, 16)
+                for (int j = 1; j < MYRIAD_LENGTH(m); ++j) squares = fma(g[c][j], g[c][j], squares);
+                found[c] = deviation * sqrt(squares);
+            } else {
+                found[c] = deviation * abs(g[c]);
+            }
+        }
+        return found;
+    }
     /// g, a vector for each process: zero but for its own state if the noise is diagonal.
     MYRIAD_FUNCTION vec<vec<S, n>, m> columns(const S& t, const vec<S, n>& y) const {
         const auto g = Model::template diffusion<S>(t, y, p);
