@@ -237,11 +237,11 @@ struct unit {
         return myriad::vec<R, n_unit_state>{-s[x]};
     }
     template <class R, class States>
-    MYRIAD_FUNCTION static myriad::vec<R, n_unit_state> diffusion(int, auto, const States& s, const auto&)
-        requires requires { s.of(1); }
-    {
-        return myriad::vec<R, n_unit_state>{s.of(1)[x]};
+    MYRIAD_FUNCTION static myriad::vec<R, n_unit_state> diffusion(int, auto, const States& s,
+                                                                  const auto&) requires requires {
+        s.of(1);
     }
+    { return myriad::vec<R, n_unit_state>{s.of(1)[x]}; }
 };
 using units = myriad::coupled_units<unit, 4>;
 MYRIAD_INSTANTIATE(units, myriad::euler_maruyama)

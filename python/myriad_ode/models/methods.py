@@ -22,8 +22,8 @@ controls: tuple[str, ...] = get_args(Control)  #: the names of choices of step-s
 
 class _Facts(NamedTuple):
     """What the library says of a method. `noise`, which it takes, is "none", "any", "additive", or "diagonal", where
-    additive noise counts too. Of those, all but the methods for means alone follow paths, and some estimate the errors of
-    their steps along them."""
+    additive noise counts too. Of those, all but the methods for means alone follow paths, and some estimate the errors
+    of their steps along them."""
 
     stages: int
     fixed_step: bool

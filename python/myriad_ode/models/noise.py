@@ -13,8 +13,8 @@ from ..symbolic.expression import constant
 from ..symbolic.node import Node, text
 from ..symbolic.numbers import is_whole
 from .delays import refuse_method
-from .methods import (adaptive_on_paths, additive_noise, default, diagonal_noise, fixed_step, halving, methods, pathless,
-                      stiff, stochastic)
+from .methods import (adaptive_on_paths, additive_noise, default, diagonal_noise, fixed_step, halving, methods,
+                      pathless, stiff, stochastic)
 
 if TYPE_CHECKING:
     from ..symbolic.expression import Expression

@@ -142,11 +142,7 @@ private:
 class moments_state final : public reduction_state {
 public:
     moments_state(std::string of, std::int64_t size, bool of_mean)
-        : of_(std::move(of)),
-          of_mean_(of_mean),
-          sum_(size),
-          squares_(size),
-          count_(static_cast<std::size_t>(size)),
+        : of_(std::move(of)), of_mean_(of_mean), sum_(size), squares_(size), count_(static_cast<std::size_t>(size)),
           squared_(count_) {}
 
     void add(const chunk_columns& chunk) override {
@@ -200,8 +196,8 @@ public:
     }
 
 private:
-    /// The sum of the squares of deviations from the mean, NaN of less than two numbers. That from the rounded mean m is
-    /// exact, S2 - 2 m S1 + n m^2, and rounded once.
+    /// The sum of the squares of deviations from the mean, NaN of less than two numbers. That from the rounded mean m
+    /// is exact, S2 - 2 m S1 + n m^2, and rounded once.
     double deviations(std::size_t j) {
         const double n = count_[j];
         if (n < 2 || squared_[j] != n) return std::numeric_limits<double>::quiet_NaN();
@@ -294,7 +290,8 @@ ensemble_reduction mean_of(std::string_view of) {
 }
 
 ensemble_reduction variance_of(std::string_view of) {
-    return one_value<moments_state>(of, "variance", 2 * (exact_sum::digits + 1), detail::reduction_kind::moments, false);
+    return one_value<moments_state>(of, "variance", 2 * (exact_sum::digits + 1), detail::reduction_kind::moments,
+                                    false);
 }
 ensemble_reduction standard_error_of(std::string_view of) {
     return one_value<moments_state>(of, "standard_error", 2 * (exact_sum::digits + 1), detail::reduction_kind::moments,

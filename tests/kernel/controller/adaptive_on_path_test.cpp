@@ -118,8 +118,7 @@ TEST_CASE("errors of adaptive paths average out as those of fixed steps do, alth
     CHECK(std::fabs(of_growth.mean()) < 0.1 * of_growth.abs().mean());
     auto q = stiff(paths);
     const auto report = myriad::solve<sriw1>(tests::test_device(2), q, within(1e-3));
-    const Eigen::ArrayXd of_x =
-        q.state(quadratic::x) - (std::atanh(0.5) - 1 + 2.5 * wiener(0, paths, 0.25)).tanh();
+    const Eigen::ArrayXd of_x = q.state(quadratic::x) - (std::atanh(0.5) - 1 + 2.5 * wiener(0, paths, 0.25)).tanh();
     CHECK(report.rejected_steps > report.accepted_steps / 20);
     CHECK(std::fabs(of_x.mean()) < 0.2 * of_x.abs().mean());
 }

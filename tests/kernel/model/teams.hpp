@@ -37,10 +37,12 @@ struct noisy_place {
     MYRIAD_FUNCTION static myriad::vec<R, n_unit_state> rhs(int unit, auto, const auto& y, const auto& p) {
         return {p[F] - y[x] + R(0.1) * y.of((unit + 1) % y.units)[x] + y.coupled(0), y[x] - R(3) * y[memory]};
     }
+    // snippet: diffusion
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_unit_state> diffusion(int unit, auto, const auto& y, const auto& p) {
         return {R(0.1) * p.unit_parameter[strength] * y[x], R(0.2 + 0.01 * unit)};
     }
+    // end of snippet
 };
 /// Of one state each, so that units share groups of processes.
 struct noisy_point {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Adaptive steps of stochastic equations. Steps end at multiples of their length, which is a cell of the path or a half,
-// a quarter and so on of one, so that a rejected step is taken again along the same path, refined by its tree: nothing is
-// drawn again, nothing is stored, and what was rejected leaves no trace but the length of the steps.
+// Adaptive steps of stochastic equations. Steps end at multiples of their length, which is a cell of the path or a
+// half, a quarter and so on of one, so that a rejected step is taken again along the same path, refined by its tree:
+// nothing is drawn again, nothing is stored, and what was rejected leaves no trace but the length of the steps.
 #pragma once
 
 #include "myriad/kernel/controller/norm.hpp"
@@ -54,7 +54,8 @@ struct adaptive_stepping_on_path {
         detail::set_place(s.steps.from, i, detail::place_of_length(t - t_begin, args.noise.cell));
         set_lane(s.steps.last_not_finite, i, false);
         const R wanted = abs(get_lane(s.data.h_next, i));
-        set_step(i, parts_within(wanted > R(0) ? wanted : args.noise.cell, parts_of_cell), get_lane(s.data.t_end, i) < t);
+        set_step(i, parts_within(wanted > R(0) ? wanted : args.noise.cell, parts_of_cell),
+                 get_lane(s.data.t_end, i) < t);
     }
     MYRIAD_FUNCTION void move(int, R) {}
     MYRIAD_FUNCTION void resume(int, R) {}
@@ -110,8 +111,7 @@ struct adaptive_stepping_on_path {
         s.data.t = select(accepted, t1, s.data.t);
         s.steps.from.cell = select(accepted, s.steps.to.cell, s.steps.from.cell);
         s.steps.from.part = select(accepted, s.steps.to.part, s.steps.from.part);
-        for_each_lane(accepted & (s.final_step | s.steps.between),
-                      [&](int i) MYRIAD_LAMBDA { set_between(i); });
+        for_each_lane(accepted & (s.final_step | s.steps.between), [&](int i) MYRIAD_LAMBDA { set_between(i); });
         return accepted & (t1 == s.data.t_end);
     }
 

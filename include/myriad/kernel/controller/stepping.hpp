@@ -30,9 +30,9 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 ///     stagnation_interval, stagnates(i)
 ///                                    every so many iterations: will the phase never end? 0: no check
 template <class Model, class Method, class S>
-using stepping = std::conditional_t<
-    !is_adaptive<Method>, fixed_stepping<Model, Method, S>,
-    std::conditional_t<stochastic_method<Method>, adaptive_stepping_on_path<Model, Method, S>,
-                       adaptive_stepping<Model, Method, S>>>;
+using stepping =
+    std::conditional_t<!is_adaptive<Method>, fixed_stepping<Model, Method, S>,
+                       std::conditional_t<stochastic_method<Method>, adaptive_stepping_on_path<Model, Method, S>,
+                                          adaptive_stepping<Model, Method, S>>>;
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET

@@ -24,8 +24,8 @@ struct sriw1 {
     static constexpr bool estimates_error = true;                ///< for `adaptive`
 
     /// The state at t1, which is t + h up to rounding; `slope` is the drift at (t, y). If asked for the `error`, it is
-    /// estimated in the mean over what the path may do, with another evaluation of the drift: an estimate along the path
-    /// would have longer steps where the path moves little, and errors of the steps would not average out.
+    /// estimated in the mean over what the path may do, with another evaluation of the drift: an estimate along the
+    /// path would have longer steps where the path moves little, and errors of the steps would not average out.
     template <class Equation, class S, detail::extent n, class... Error>
     MYRIAD_FUNCTION static vec<S, n> step(const Equation& equation, const S& t, const S& h, const S& t1,
                                           const vec<S, n>& y, const vec<S, n>& slope, Error&... error) {
@@ -86,8 +86,8 @@ struct sriw1 {
             MYRIAD_UNROLL_UP_TO(64, 16)
             for (int c = 0; c < MYRIAD_LENGTH(n); ++c) {
                 // The factors of I(1,0) / h and I(1,1,1) / h, which have variances h / 3 and h / 6.
-                const S of_integral = S(R(2)) * kick_first[c] -
-                                      third * fma(S(R(4)), kick_second[c], S(R(2)) * kick_last[c]);
+                const S of_integral =
+                    S(R(2)) * kick_first[c] - third * fma(S(R(4)), kick_second[c], S(R(2)) * kick_last[c]);
                 const S of_cube = (kick_fourth[c] - S(R(2)) * kick_first[c]) +
                                   third * fma(S(R(5)), kick_second[c], S(R(-2)) * kick_last[c]);
                 const S by_noise = sqrt(third * fma(of_integral, of_integral, S(R(0.5)) * of_cube * of_cube));

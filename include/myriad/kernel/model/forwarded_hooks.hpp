@@ -31,9 +31,8 @@ MYRIAD_FORWARDED(with_observe, with_events, has_observe<Model>){
 }
 ;
 MYRIAD_FORWARDED(with_diffusion, with_observe, has_diffusion<Model>){
-    template <class R>
-    MYRIAD_FUNCTION static auto diffusion(auto t, const auto& y, const auto& p){
-        return To::template diffusion<R>(t, y, p);
+    template <class R> MYRIAD_FUNCTION static auto diffusion(auto t, const auto& y,
+                                                             const auto& p){return To::template diffusion<R>(t, y, p);
 }
 }
 ;

@@ -146,7 +146,7 @@ struct unit_states {
 /// The state of one unit alone: the argument y of `diffusion`.
 template <class Unit, class S>
 struct state_of_unit {
-    const S* own;
+    const S* own;  ///< its states
 
     /// Component c of this unit.
     template <class C>

@@ -86,8 +86,8 @@ struct adaptive_state_on_path {
     typename integers::small parts;  // of a cell in a step
     typename integers::small node;   // the same if the trial is over a node of the tree, else 0
     path_owner<S> path;
-    mask_of<S> between;              // `from` is no multiple of the step
-    mask_of<S> last_not_finite;      // as in `adaptive_state`
+    mask_of<S> between;          // `from` is no multiple of the step
+    mask_of<S> last_not_finite;  // as in `adaptive_state`
     S tolerance_scale;
 
     /// A lane without an instance stays where it is.
@@ -109,7 +109,6 @@ using adaptive_state_of =
 template <class Method, class S>
 using fixed_state_of = std::conditional_t<stochastic_method<Method>, fixed_state_on_path<S>, fixed_state<S>>;
 template <class Method, class S>
-using stepping_state =
-    std::conditional_t<is_adaptive<Method>, adaptive_state_of<Method, S>, fixed_state_of<Method, S>>;
+using stepping_state = std::conditional_t<is_adaptive<Method>, adaptive_state_of<Method, S>, fixed_state_of<Method, S>>;
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET

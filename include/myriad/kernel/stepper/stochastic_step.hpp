@@ -28,7 +28,7 @@ struct trial_step<Method, S, n> {
 
 /// The same with an estimate of its error.
 template <class Method, class S, extent n>
-requires(stochastic_method<Method> && Method::embedded_order > 0) struct trial_step<Method, S, n> {
+requires(stochastic_method<Method>&& Method::embedded_order > 0) struct trial_step<Method, S, n> {
     vec<S, n> slope, y, error;
     tree_interval<S> noise;
 

@@ -119,8 +119,11 @@ struct named_reduction {
     ensemble_reduction (*make)(std::string_view variable);
 };
 /// Those that files and the Python package have from here.
-inline constexpr named_reduction named_reductions[] = {
-    {"minimum_of", &minimum_of}, {"maximum_of", &maximum_of}, {"mean_of", &mean_of}, {"variance_of", &variance_of}, {"standard_error_of", &standard_error_of}};
+inline constexpr named_reduction named_reductions[] = {{"minimum_of", &minimum_of},
+                                                       {"maximum_of", &maximum_of},
+                                                       {"mean_of", &mean_of},
+                                                       {"variance_of", &variance_of},
+                                                       {"standard_error_of", &standard_error_of}};
 
 }  // namespace studies::inline MYRIAD_ABI
 
