@@ -218,8 +218,7 @@ def method_for(model: AnyModel, method: str | None, precision: str) -> str:
     return method
 
 
-def control_for(model: AnyModel, method: str, control: str | Sequence[str],
-                options: Any) -> str | Sequence[str]:
+def control_for(model: AnyModel, method: str, control: str | Sequence[str], options: Any) -> Any:
     """The control of a call: by halving where a method for noise has tolerances and no step. Refuses a method for fixed
     steps without one."""
     if halving in ((control,) if isinstance(control, str) else control):
