@@ -3,11 +3,11 @@
 // exact sum. All in integers, so that the result depends neither on the order nor on who computes.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include "myriad/kernel/core/macros.hpp"
 #include "myriad/kernel/core/status.hpp"
-#include "myriad/kernel/scalar/math.hpp"
 #include "myriad/kernel/scalar/select.hpp"
 
 namespace myriad::detail {
@@ -111,7 +111,7 @@ struct exact_square {
 };
 MYRIAD_FUNCTION exact_square square_of(double value) {
     const double rounded = value * value;
-    return {rounded, fma(value, value, -rounded), abs(value) < 0x1p480};
+    return {rounded, std::fma(value, value, -rounded), value > -0x1p480 && value < 0x1p480};
 }
 
 /// A positive number for every finite one, in the same order, -0 before 0.
