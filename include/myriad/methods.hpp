@@ -3,6 +3,7 @@
 #pragma once
 
 #include "myriad/kernel/core/language.hpp"
+#include "myriad/kernel/methods/adaptive.hpp"
 #include "myriad/kernel/methods/cash_karp.hpp"
 #include "myriad/kernel/methods/controller_policies.hpp"
 #include "myriad/kernel/methods/dense.hpp"

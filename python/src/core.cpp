@@ -47,7 +47,8 @@ namespace myriad::python {
 namespace {
 
 /// What the package asks of a method: its stages, whether it takes fixed steps alone, whether it solves linear systems,
-/// the noise that it takes, which is none of a method for ordinary equations, and whether it follows paths.
+/// the noise that it takes, which is none of a method for ordinary equations, whether it follows paths, and whether it
+/// estimates the errors of steps along them.
 template <class Method>
 nb::tuple facts_of() {
     const char* noise = "none";
@@ -67,7 +68,7 @@ nb::tuple facts_of() {
         }
     }
     return nb::make_tuple(Method::stages, Method::embedded_order == 0, detail::solves_linear_systems<Method>, noise,
-                          follows_paths);
+                          follows_paths, detail::estimates_error<Method>);
 }
 
 /// The report, and the exception that ended the call early or None.

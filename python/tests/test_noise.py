@@ -380,10 +380,85 @@ def test_a_process_in_an_equation_is_refused():
         my.model({W: 1.0})
 
 
-def test_noise_of_coupled_units_is_refused():
-    of_units, = my.units(4).states("x")
-    with pytest.raises(my.Error, match="a model with noise has no coupled units yet"):
-        my.model({of_units: -of_units}, noise={of_units: 1})
+def noisy_units(n=4, **noise):
+    """Units in a ring, with a process for each state."""
+    units = my.units(n)
+    u, v = units.states("u v")
+    strength, around = units.parameter("strength"), units.circulant_coupling("A", np.roll(np.eye(n), 1, axis=1), 1)
+    return my.model({u: around @ u - u, v: u - v}, noise={u: strength * u, v: sigma}, **noise), (u, v, strength)
+
+
+def test_units_have_noise_of_their_own_which_is_that_of_the_written_system():
+    model, (u, v, strength) = noisy_units()
+    states = my.states("u_0 v_0 u_1 v_1 u_2 v_2 u_3 v_3")
+    of_u, of_v, factors = states[::2], states[1::2], my.parameters("s_0 s_1 s_2 s_3")
+    written = my.model({one: slope for i in range(4) for one, slope in
+                        ((of_u[i], of_u[(i + 1) % 4] - of_u[i]), (of_v[i], of_u[i] - of_v[i]))},
+                       noise={one: factor for i in range(4) for one, factor in
+                              ((of_u[i], factors[i] * of_u[i]), (of_v[i], sigma))})
+    each = dict(time=(0, 1), step=1 / 64, seed=5, paths=20)
+    units = my.solve(model, {strength: [0.1, 0.2, 0.3, 0.4], sigma: 0.5}, start={u: [1, 2, 3, 4], v: 0}, **each)
+    whole = my.solve(written, {**dict(zip(factors, [0.1, 0.2, 0.3, 0.4])), sigma: 0.5},
+                     start={**dict(zip(of_u, [1, 2, 3, 4])), **dict.fromkeys(of_v, 0)}, **each)
+    for state in written.states:
+        np.testing.assert_allclose(units[state], whole[state], rtol=1e-13)
+    assert abs(np.corrcoef(units["v_0"], units["v_1"])[0, 1]) < 1
+
+
+def test_the_cpp_of_units_has_a_diffusion_of_one_unit():
+    text, _ = noisy_units(20)[0].device_source("euler_maruyama", "double")
+    assert "diffusion([[maybe_unused]] int unit" in text and "coupled_units<" in text
+    units = my.units(20)
+    u = units.state("u")
+    looks = my.model({u: -u}, noise={u: np.roll(u, 1)}).device_source("euler_maruyama", "double")[0]
+    assert "coupled_units<" not in looks  # a unit's factors see its own states alone
+    named = my.model({u: -u}, noise={one: {W: 1} for one in u}).device_source("euler_maruyama", "double")[0]
+    assert "coupled_units<" not in named
+
+
+# -- Adaptive steps ----------------------------------------------------------------------------------------------------
+
+def test_tolerances_without_a_step_give_adaptive_steps_along_the_same_path():
+    model = my.model({x: mu * x}, noise={x: sigma * x})
+    values, each = {mu: 0.3, sigma: 0.5}, dict(start={x: 1}, time=(0, 1), seed=5, noise_step=0.25, paths=200)
+    path = my.solve(my.model({x: 0}, noise={x: 1}), time=(0, 1), start={x: 0}, step=0.25, seed=5, paths=200)["x"]
+    errors = []
+    for tolerance in (1e-2, 1e-3, 1e-4):
+        run = my.solve(model, values, method="sriw1", rtol=tolerance, atol=tolerance, **each)
+        errors.append(np.abs(run["x"] - exact(path, 1)).mean())
+        assert errors[-1] < 3 * tolerance and run.report.accepted_steps > 200 * 4
+    assert errors[0] > 3 * errors[1] > 9 * errors[2] and run.report.rejected_steps > 200
+    result = my.study(model, values, method="sriw1", rtol=1e-4, atol=1e-4, keep=[x], **each).run(chunk=37)
+    np.testing.assert_array_equal(result["x_end"].ravel(), run["x"])
+    fixed = my.solve(model, values, method="sriw1", rtol=1e-4, step=1 / 4096, **each)
+    assert fixed.report.rejected_steps == 0 and np.abs(fixed["x"] - run["x"]).max() < 1e-2
+
+
+def test_adaptive_steps_of_additive_noise_begin_with_a_64th_of_the_domain():
+    model = my.model({x: -x**3}, noise={x: 0.01})
+    run = my.solve(model, start={x: 0}, time=(0, 1), method="sra1", rtol=1e-2, atol=1e-2, seed=1, paths=3)
+    assert run.accepted_steps.tolist() == [64] * 3
+
+
+@pytest.mark.parametrize("more, said", [
+    (dict(method="milstein"), "milstein takes fixed steps: give step="),
+    (dict(method="sriw1", rtol=1e-8), "sriw1 takes fixed steps or adaptive ones: give step=, or rtol= and atol="),
+    (dict(method="sriw1", control="rms_norm"), "adaptive steps along a path are halved and doubled, and have no other"),
+    (dict(method="sriw1", control="halving", step=0.1), "there is no step-size control 'halving': leave out step="),
+])
+def test_what_adaptive_steps_along_paths_do_not_take_is_refused(more, said, nothing_compiles):
+    with pytest.raises(my.Error, match=said):
+        call(diagonal(), **{**dict(step=None, rtol=1e-2), **more})
+
+
+def test_events_with_adaptive_steps_along_paths_are_refused(nothing_compiles):
+    with pytest.raises(my.Error, match="the model's events are found in fixed steps alone yet: give step="):
+        call(my.model({x: -x}, noise={x: 1}, events=my.event(x - 3)), method="sra1", step=None, rtol=1e-2)
+
+
+def test_instances_with_domains_of_their_own_need_a_noise_step_for_adaptive_steps():
+    with pytest.raises(my.Error, match="noise_step is not set, and instances have domains of their own"):
+        call(diagonal(), method="sriw1", step=None, rtol=1e-2, time=(0, [1, 2]))
 
 
 # -- Calls that do not fit ---------------------------------------------------------------------------------------------

@@ -120,6 +120,28 @@ for one, method, more in ((shared, "stochastic_heun", {}), (own, "milstein", dic
 """)
 
 
+def test_adaptive_steps_along_paths_and_noise_of_units_are_the_cpus(run):
+    run("""
+one = my.model({x: -x}, noise={x: 0.5 * x})
+each = dict(start={x: 1}, time=(0, 1), seed=7, paths=40, method="sriw1", rtol=1e-3, atol=1e-3)
+cpu, gpu = (my.solve(one, device=device, **each) for device in ("cpu", "cuda"))
+assert gpu.report.rejected_steps > 0 and abs(gpu.report.accepted_steps / cpu.report.accepted_steps - 1) < 0.01
+assert np.abs(cpu["x"] - gpu["x"]).max() < 1e-2 and np.isclose(cpu["x"], gpu["x"], rtol=1e-12).mean() > 0.9
+
+n = 20
+units = my.units(n, threads_per_instance=8)
+u, v = units.states("u v")
+A = units.circulant_coupling("A", np.roll(np.eye(n), 1, axis=1), 1)
+ring = my.model({u: A @ u - u, v: u - v}, noise={u: 0.1 * u, v: 0.2})
+for method, more in (("milstein", dict(step=1 / 64)), ("sriw1", dict(rtol=1e-2, atol=1e-2))):
+    each = dict(start={u: np.linspace(1, 2, n), v: 0}, time=(0, 1), seed=7, paths=12, method=method, **more)
+    cpu, gpu = (my.solve(ring, device=device, **each) for device in ("cpu", "cuda"))
+    assert gpu.report.threads_per_instance == 8
+    for state in ring.states:
+        assert np.allclose(cpu[state], gpu[state], atol=1e-12 if "step" in more else 0.02), (state, method)
+""")
+
+
 def test_a_gpu_has_the_notes_and_checks_of_a_cpu(run):
     run("""
 y, rate, s = my.state("y"), my.parameter("rate"), my.states(" ".join(f"s_{i}" for i in range(12)))
@@ -426,6 +448,7 @@ def test_reductions_of_a_study_are_those_of_the_cpu(run):
     run(GENERATED + """
 reductions = lambda: [my.reduce.mean("x_end"), my.reduce.minimum("x_end"), my.reduce.maximum("x"),
                       my.reduce.histogram("x_end", my.linspace(-2, 2, 11)), my.reduce.mean("x"),
+                      my.reduce.variance("x"), my.reduce.standard_error("x_end"),
                       my.reduce.histograms("x", my.linspace(-2, 2, 11)),
                       my.reduce.quantiles("x", [0, 0.5, 1], my.linspace(-2, 2, 401))]
 made = lambda **more: generated(700, phases=3, record=[x], reduce=reductions(), **more)
@@ -439,6 +462,8 @@ for device in ("cuda", ["cuda", "cuda:1"]):
     assert np.array_equal(result["x_maximum"], result["x"].max(axis=0))
     assert np.allclose(result["x_end_mean"], result["x_end"].mean(), rtol=1e-14)
     assert np.allclose(result["x_mean"], result["x"].mean(axis=0), rtol=1e-12)
+    assert np.allclose(result["x_variance"], result["x"].var(axis=0, ddof=1), rtol=1e-12)
+    assert np.isclose(result["x_end_standard_error"], result["x_end"].std(ddof=1) / 700**0.5, rtol=1e-12)
 sums = study(50, reduce=[my.reduce.total("total", ["x_end"], 1, lambda c: c["x_end"].sum())]).run(device="cuda")
 assert np.isclose(sums["total"], sums["x_end"].sum())
 """, MYRIAD_SIMULATED_GPUS=2)

@@ -172,6 +172,18 @@ def test_reductions_are_numpys():
     assert "x" not in alone.run().names
 
 
+def test_variances_and_standard_errors_are_numpys_in_any_chunks():
+    several = [make(name) for name in ("x", "x_end") for make in (my.reduce.variance, my.reduce.standard_error)]
+    results = [my.study(duffing(), grid(), keep=[x], reduce=several, **call).run(chunk=chunk) for chunk in (7, 1000)]
+    for name, axes in (("x", (0, 1)), ("x_end", None)):
+        values = results[0][name]
+        variance, n = values.var(axis=axes, ddof=1), results[0]["x_end"].size
+        np.testing.assert_allclose(results[0][f"{name}_variance"], variance, rtol=1e-13)
+        np.testing.assert_allclose(results[0][f"{name}_standard_error"], np.sqrt(variance / n), rtol=1e-13)
+        for what in ("variance", "standard_error"):
+            np.testing.assert_array_equal(results[0][f"{name}_{what}"], results[1][f"{name}_{what}"])
+
+
 def test_histograms_and_quantiles_of_each_sample():
     edges, shares = np.linspace(-2, 2, 401), [0.05, 0.5, 0.95]
     result = my.study(duffing(), {k: my.uniform(0.2, 0.3), B: 0.3}, draws=500, start={x: my.normal(0, 0.1), v: 0},

@@ -38,8 +38,16 @@
 // expect: with_tangents and with_sensitivities take no model with a diffusion
 // case: diffusion_with_a_mass_matrix
 // expect: the model has a mass_matrix, which methods for stochastic equations do not take
-// case: diffusion_of_coupled_units
-// expect: coupled units have no diffusion yet
+// case: noise_that_coupled_units_share
+// expect: the noise of coupled units is a factor for each state of a unit
+// case: diffusion_that_looks_at_other_units
+// expect: diffusion of coupled units has a wrong signature: .*of which it sees the unit's own alone
+// case: adaptive_steps_without_an_estimate
+// expect: this method has no error estimate for adaptive steps: use adaptive<sra1>
+// case: events_within_adaptive_steps
+// expect: events and extrema of a model with a diffusion are found in fixed steps alone yet
+// case: adaptive_steps_with_a_controller
+// expect: steps of stochastic equations are halved and doubled, by no controller
 // SPDX-License-Identifier: MIT
 // Stochastic equations with methods and parts that do not fit them.
 #include <myriad/instantiate.hpp>  // first, as it is precompiled
@@ -217,19 +225,42 @@ struct massive : walk {
 };
 MYRIAD_INSTANTIATE(massive, myriad::euler_maruyama)
 #endif
-#if defined(CASE_diffusion_of_coupled_units)
+#if defined(CASE_noise_that_coupled_units_share) || defined(CASE_diffusion_that_looks_at_other_units)
 struct unit {
     enum unit_state { x, n_unit_state };
+#if defined(CASE_noise_that_coupled_units_share)
+    enum noise { W, n_noise };
+#endif
 
     template <class R>
     MYRIAD_FUNCTION static myriad::vec<R, n_unit_state> rhs(int, auto, const auto& s, const auto&) {
         return myriad::vec<R, n_unit_state>{-s[x]};
     }
-    template <class R>
-    MYRIAD_FUNCTION static myriad::vec<R, n_unit_state> diffusion(int, auto, const auto& s, const auto&) {
-        return myriad::vec<R, n_unit_state>{s[x]};
+    template <class R, class States>
+    MYRIAD_FUNCTION static myriad::vec<R, n_unit_state> diffusion(int, auto, const States& s,
+                                                                  const auto&) requires requires {
+        s.of(1);
     }
+    { return myriad::vec<R, n_unit_state>{s.of(1)[x]}; }
 };
 using units = myriad::coupled_units<unit, 4>;
 MYRIAD_INSTANTIATE(units, myriad::euler_maruyama)
+#endif
+#if defined(CASE_adaptive_steps_without_an_estimate)
+MYRIAD_INSTANTIATE(walk, myriad::adaptive<myriad::milstein>)
+#endif
+#if defined(CASE_events_within_adaptive_steps)
+struct stopped : walk {
+    enum event { zero, n_event };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_event> events(auto, const myriad::vec<R, n_state>& s, const auto&) {
+        return myriad::vec<R, n_event>{s[x]};
+    }
+};
+MYRIAD_INSTANTIATE(stopped, myriad::adaptive<myriad::sriw1>)
+#endif
+#if defined(CASE_adaptive_steps_with_a_controller)
+using controlled_steps = myriad::controlled<myriad::adaptive<myriad::sriw1>, myriad::pi_control>;
+MYRIAD_INSTANTIATE(walk, controlled_steps)
 #endif

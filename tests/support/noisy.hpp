@@ -48,6 +48,23 @@ struct interrupted : solvable {
     }
 };
 
+/// x = tanh(artanh(x(0)) - a t + b W), the stiffer the larger a and b are: near 1 it is left at the rate 2 (a + b^2).
+struct quadratic {
+    enum state { x, n_state };
+    enum parameter { a, b, n_parameter };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& y, const auto& p) {
+        using T = myriad::real_of<R>;
+        return myriad::vec<R, n_state>{-(p[a] + p[b] * p[b] * y[x]) * (T(1) - y[x] * y[x])};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> diffusion(auto, const myriad::vec<R, n_state>& y, const auto& p) {
+        using T = myriad::real_of<R>;
+        return myriad::vec<R, n_state>{p[b] * (T(1) - y[x] * y[x])};
+    }
+};
+
 /// Noise that does not depend on the states: x = (x(0) + b t + a b W) / sqrt(1 + t), and one drift that is
 /// not linear.
 struct additive {

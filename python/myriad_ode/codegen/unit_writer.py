@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
 
 # What a unit has by these names, beside those that begin like its own variables.
-_members = {"unit", "publish", "publication", "n_publication", "couplings", "observe", "events", "summaries",
-            "threads_per_instance", "wanted"}
+_members = {"unit", "publish", "publication", "n_publication", "couplings", "diffusion", "observe", "events",
+            "summaries", "threads_per_instance", "wanted"}
 
 
 class _NotAlike(Exception):
@@ -62,6 +62,14 @@ class UnitForm(Writer):
         self.event_functions, self.quantities = ([
             self._alike([several[f"{name}_{i}"] for i in range(n)], coupled=False) for name in self.of_unit[kind]]
             for kind, several in (("event_count", functions), ("observed", observed)))
+        self.factors: list[Node] = []
+        if model.noise is not None:
+            factors = dict(zip(model.states, model.noise.factors))
+            self.factors = [self._alike([factors[f"{name}_{i}"] for i in range(n)], coupled=False)
+                            for name in self.of_unit["state"]]
+            if any(kind == "of_unit" and value[0] == "state" and value[2] != 0
+                   for kind, value in (s.value for s in symbols_of(self.factors))):
+                raise _NotAlike  # a unit's factors see its own states alone
         summaries: list[list[tuple[str, str, str]]] = [[] for _ in range(n)]
         for one in model.summaries:
             unit, of_accessory = self._number("observed", one.observed), self._number("accessory", one.accessory)
@@ -185,6 +193,8 @@ class UnitForm(Writer):
         model, n = self.model, self.units.count
         lines = [f"static constexpr bool {name} = true;" for name in (
             "accessories_are_outputs", "writes_parameters", "writes_time_domain") if getattr(model, name)]
+        if model.noise is not None and model.noise.is_additive:
+            lines.append("static constexpr bool additive_noise = true;")
         if self.units.threads_per_instance is not None:
             lines.append(f"static constexpr int threads_per_instance = {self.units.threads_per_instance};")
         lines += self._enumerations()
@@ -196,7 +206,8 @@ class UnitForm(Writer):
                 for quantity, kind, accessory in self.summaries) + "};")
         blocks = [self._function("publish", "n_publication", list(self.published))] if self.published else []
         blocks.append(self._function("rhs", "n_unit_state", self.roots))
-        for name, count, roots in (("events", "n_unit_event", self.event_functions),
+        for name, count, roots in (("diffusion", "n_unit_state", self.factors),
+                                   ("events", "n_unit_event", self.event_functions),
                                    ("observe", "n_unit_observed", self.quantities)):
             blocks += [self._function(name, count, roots)] if roots else []
         blocks += self._hook_functions()
@@ -359,7 +370,7 @@ def unit_form(model: RecordedModel) -> UnitForm | None:
     units = model.units_of_states
     if units is None or units.count < 2 or model.delays or model.triggers or model.queue:
         return None
-    if model.mass_matrix is not None:
+    if model.mass_matrix is not None or model.noise is not None and model.noise.processes:
         return None
     try:
         form = UnitForm(model, units)

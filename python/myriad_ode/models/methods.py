@@ -22,13 +22,15 @@ controls: tuple[str, ...] = get_args(Control)  #: the names of choices of step-s
 
 class _Facts(NamedTuple):
     """What the library says of a method. `noise`, which it takes, is "none", "any", "additive", or "diagonal", where
-    additive noise counts too. Of those, all but the methods for means alone follow paths."""
+    additive noise counts too. Of those, all but the methods for means alone follow paths, and some estimate the errors
+    of their steps along them."""
 
     stages: int
     fixed_step: bool
     solves_linear_systems: bool
     noise: str
     follows_paths: bool
+    estimates_error: bool
 
 
 _facts = {name: _Facts(*facts) for name, facts in _core.methods.items()}
@@ -42,6 +44,7 @@ stochastic = _those(lambda facts: facts.noise != "none")  #: for noise, the firs
 additive_noise = _those(lambda facts: facts.noise == "additive")  #: those for this noise alone
 diagonal_noise = _those(lambda facts: facts.noise == "diagonal")  #: those for this noise, or additive noise, alone
 pathless = _those(lambda facts: facts.noise != "none" and not facts.follows_paths)  #: those for means alone
+adaptive_on_paths = _those(lambda facts: facts.estimates_error)  #: those that take adaptive steps along them too
 fixed_step = _those(lambda facts: facts.fixed_step)
 stiff = _those(lambda facts: facts.solves_linear_systems)  #: those that solve linear systems
 
@@ -50,6 +53,8 @@ def stages_of(written: str) -> int:
     """The stages of the method in a C++ type."""
     return next((_facts[word].stages for word in re.findall(r"\w+", written) if word in _facts), 7)
 
+
+halving = "halving"  #: what stands for `adaptive` among choices of control
 
 default = "tsitouras_5"  # docs/methods.md#the-default
 
@@ -71,6 +76,9 @@ def method_type(name: str, chosen: str | Sequence[str] = (), samples: bool = Fal
         hint = f"use \"{near}\", or another" if near else "choose one"
         raise Error(f"there is no method {name!r}: {hint} of {', '.join(methods)}")
     choices: tuple[Any, ...] = tuple(chosen) if isinstance(chosen, (list, tuple, set)) else (chosen,)
+    if choices == (halving,) and name in adaptive_on_paths:
+        written = f"myriad::adaptive<myriad::{name}>"
+        return f"myriad::dense<{written}>" if samples else written
     for choice in choices:
         if choice not in controls:
             raise Error(f"there is no step-size control {choice!r}: choose of {', '.join(controls)}")

@@ -13,7 +13,8 @@ from ..symbolic.expression import constant
 from ..symbolic.node import Node, text
 from ..symbolic.numbers import is_whole
 from .delays import refuse_method
-from .methods import additive_noise, default, diagonal_noise, methods, pathless, stiff, stochastic
+from .methods import (adaptive_on_paths, additive_noise, default, diagonal_noise, fixed_step, halving, methods,
+                      pathless, stiff, stochastic)
 
 if TYPE_CHECKING:
     from ..symbolic.expression import Expression
@@ -163,8 +164,6 @@ def refuse_parts(model: Any) -> None:
         instead = ("an event and an extreme would not know of each other within a step; take extrema in after_step")
     elif model.mass_matrix is not None:
         what, instead = "mass matrix", "divide its equations by what stands before their derivatives"
-    elif model.units_of_states is not None:
-        what, instead = "coupled units", "name the states of each unit"
     elif model.writes_time_domain:
         what, instead = "hooks that assign t_begin or t_end", "its paths count time from t_begin"
     if what:
@@ -217,6 +216,25 @@ def method_for(model: AnyModel, method: str | None, precision: str) -> str:
             raise Error(f"{method} takes noise whose factor of a state depends on no other state, and that of "
                         f"{both[0]} depends on {both[1]}: {otherwise}")
     return method
+
+
+def control_for(model: AnyModel, method: str, control: str | Sequence[str], options: Any) -> Any:
+    """The control of a call: by halving where a method for noise has tolerances and no step. Refuses a method for fixed
+    steps without one."""
+    if halving in ((control,) if isinstance(control, str) else control):
+        raise Error(f"there is no step-size control {halving!r}: leave out step=, and give rtol= and atol=")
+    if method not in fixed_step or options.step is not None:
+        return control
+    if method not in adaptive_on_paths:
+        raise Error(f"{method} takes fixed steps: give step=")
+    if all(isinstance(one, float) and one == 1e-8 for one in (options.rtol, options.atol)):
+        raise Error(f"{method} takes fixed steps or adaptive ones: give step=, or rtol= and atol=")
+    if control:
+        raise Error("adaptive steps along a path are halved and doubled, and have no other control: leave out control=")
+    if model.has_noise is not None and (model.events or model.summaries):
+        raise Error(f"the model's {'events' if model.events else 'extrema'} are found in fixed steps alone yet: give "
+                    "step= instead of tolerances")
+    return (halving,)
 
 
 def refuse_options_of_paths(method: str, seed: int, noise_step: float) -> None:

@@ -119,7 +119,8 @@ class Options:
     carry_on_step: a phase starts with `step`, or with the last step size (`carry_on`)
     seed: seed of the paths of a stochastic equation (in [0, 4294967295])
     noise_step: cells of these paths: steps that are a multiple of one, or a number of 65536ths of one, follow the same
-        path; 0: the step (in [0, inf), in the model's unit of time)
+        path; the longest adaptive step; 0: the step, or for adaptive ones a 64th of the domain or phase (in [0, inf),
+        in the model's unit of time)
     history_steps: steps of the past that are kept of each instance of a model with delays; 0: 256 adaptive steps, 1024
         fixed ones, or in Python those of the longest constant lag (in [0, 1048576], in steps)
     events: how events are detected: one entry for each; none: defaults for all

@@ -6,7 +6,7 @@ from __future__ import annotations
 import dataclasses
 import functools
 import time as clock
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,10 +21,11 @@ from ..models.any_model import AnyModel
 from ..models.components import Components
 from ..models.delays import refuse_history_steps, refuse_method
 from ..models.located_switches import note_on_sliding
-from ..models.methods import fixed_step, method_type
-from ..models.noise import count_of_paths, method_for, refuse_options_of_paths
+from ..models.methods import method_type
+from ..models.noise import control_for, count_of_paths, method_for, refuse_options_of_paths
 from ..models.once_per_phase import prepared
 from ..models.sensitivities import WithSensitivities, note_on, with_sensitivities
+from ..models.units import spread
 from ..results.no_instances import EmptyEnsemble, EmptyReport, kernel as no_kernel
 from ..results.past_states import PastStates
 from ..results.report import Interrupted
@@ -76,7 +77,8 @@ class Call:
                size: int | None, options: Options, paths: int | None = None) -> None:
         """Takes inputs and options, and refuses those that do not fit."""
         if paths is not None:
-            sweep = with_paths(sweep, count_of_paths(self.model, paths))
+            given = spread(sweep, "the sweep", None) if isinstance(sweep, Mapping) else sweep
+            sweep = with_paths(given, count_of_paths(self.model, paths))
         values = given_values(self.components, sweep, start)
         if isinstance(self.model, WithSensitivities):
             self.components.defaults = {**self.components.defaults, **start_derivatives(self.model, values)}
@@ -86,11 +88,10 @@ class Call:
         if isinstance(self.model, WithSensitivities):
             options = with_derivatives(self.model, options, self.components)
         self.options = options
+        self.control = control_for(self.model, self.method, self.control, options)
         method_type(self.method, self.control, options.samples is not None)  # refuses what does not exist
         refuse_options_of_paths(self.method, options.seed, options.noise_step)
         refuse_history_steps(self.model, options.history_steps)
-        if self.method in fixed_step and options.step is None:
-            raise Error(f"{self.method} takes fixed steps: give step=")
         self.core_options, self.recorded, self.sampled = make_options(self.components, self.count, options)
         refuse_short_tables(self.model, self.given, self.domain[0])
         if (kept := steps_to_keep(self.model, self.method, self.given, self.domain, options)) is not None:

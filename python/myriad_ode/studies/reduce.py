@@ -19,7 +19,7 @@ from ..symbolic.axes import Axis
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-__all__ = ["histogram", "histograms", "maximum", "mean", "minimum", "quantiles", "total"]
+__all__ = ["histogram", "histograms", "maximum", "mean", "minimum", "quantiles", "standard_error", "total", "variance"]
 
 
 class Reduction:
@@ -92,6 +92,18 @@ def maximum(variable: str) -> Reduction:
 def mean(variable: str) -> Reduction:
     """The mean, for each phase or sample: "x_end_mean". The sum is exact and rounded once."""
     return Reduction("mean_of", _variable(variable))
+
+
+def variance(variable: str) -> Reduction:
+    """The variance, for each phase or sample: "x_end_variance", the squares of deviations from the mean over their
+    number less one. Sums are exact, so that nothing cancels; NaN of values beyond 1e144."""
+    return Reduction("variance_of", _variable(variable))
+
+
+def standard_error(variable: str) -> Reduction:
+    """The standard error of the mean, for each phase or sample: "x_end_standard_error", as `mean` is off by where
+    instances are independent, as paths of a stochastic equation are."""
+    return Reduction("standard_error_of", _variable(variable))
 
 
 class _OfChunk:

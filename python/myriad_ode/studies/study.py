@@ -27,8 +27,8 @@ from ..models.any_model import AnyModel
 from ..models.components import Components, listed, short_name
 from ..models.delays import refuse_history_steps
 from ..models.located_switches import note_on_sliding
-from ..models.methods import fixed_step, method_type, stochastic
-from ..models.noise import count_of_paths, method_for, refuse_options_of_paths
+from ..models.methods import method_type, stochastic
+from ..models.noise import control_for, count_of_paths, method_for, refuse_options_of_paths
 from ..models.once_per_phase import prepared
 from ..models.sensitivities import note_on
 from ..models.whole_numbers import check_whole_numbers
@@ -86,8 +86,7 @@ class Study:
         model, sweep = _computed_by(model, sweep)
         model, start = _computed_by(model, start)
         chosen = method_for(model, method, precision)
-        if chosen in fixed_step and options.step is None:
-            raise Error(f"{chosen} takes fixed steps: give step=")
+        control = control_for(model, chosen, control, options)
         reductions = _reductions(reduce)
         model, options = with_outputs(model, keep, options, reductions)
         model = prepared(model)

@@ -162,7 +162,7 @@ std::int64_t step_limit(const options& o, bool adaptive, int digits) {
 namespace {
 
 /// Options of paths, and steps that a path has a place for.
-void check_path(const options& o, bool has_diffusion) {
+void check_path(const options& o, bool has_diffusion, bool adaptive) {
     require(has_diffusion || o.seed == 0, named_option("seed"), " is ", o.seed,
             ", but the model has no diffusion, whose paths it seeds", cure,
             "leave it out; random numbers of hooks have seeds of their own");
@@ -172,6 +172,12 @@ void check_path(const options& o, bool has_diffusion) {
             ", but the model has a diffusion, and the law of its paths says what happens within a step", cure,
             "leave it out");
     if (!has_diffusion || o.noise_step == 0) return;
+    if (adaptive) {
+        require(o.maximum_step * detail::parts_of_cell >= o.noise_step, named_option("maximum_step"), " is ",
+                o.maximum_step, ", less than a 65536th of ", named_option("noise_step"), ", ", o.noise_step,
+                ", which is the shortest step that a path has a place for", cure, "give a smaller noise_step");
+        return;
+    }
     const double cells = o.step / o.noise_step, parts = cells * detail::parts_of_cell;
     require(parts > 0.5 && std::fabs(parts - std::rint(parts)) <= 1e-6 * parts, named_option("step"), " is ", o.step,
             ", which is neither a multiple of ", named_option("noise_step"), ", ", o.noise_step,
@@ -212,7 +218,7 @@ void option_limits::check(const options& o) const {
                 named_option("absolute_tolerance"), " are 0", cure, "give the error you accept per step, such as 1e-9");
     require(adaptive || !std::isnan(o.step), named_option("step"), " is not set, but the method takes fixed steps",
             cure, cures::give_step);
-    check_path(o, has_diffusion);
+    check_path(o, has_diffusion, adaptive);
     // Fixed steps do not use tolerances.
     for (std::size_t c = 0; adaptive && c < o.relative_tolerance.size(); ++c)
         check_kept("relative_tolerance", o.relative_tolerance[c]);

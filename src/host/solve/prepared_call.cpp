@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "myriad/host/checks/data_check.hpp"
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/options/option_checks.hpp"
 
@@ -88,7 +89,9 @@ void prepared_call<R>::fill_options(const options& o, const call_facts& facts) {
     a.maximum_step = static_cast<R>(o.maximum_step);
     if (facts.adaptive()) a.step = std::clamp(a.step, a.minimum_step, a.maximum_step);
     if (a.model->has_diffusion) {
-        const R cell = o.noise_step > 0 ? static_cast<R>(o.noise_step) : a.step;
+        const R cell = facts.adaptive()   ? static_cast<R>(cell_of_paths(data_, o, true))
+                       : o.noise_step > 0 ? static_cast<R>(o.noise_step)
+                                          : a.step;
         *array<path_constants<R>>(at.noise) = path_constants_of(cell, static_cast<std::uint64_t>(o.seed));
     }
     a.growth_limit = static_cast<float>(o.growth_limit);

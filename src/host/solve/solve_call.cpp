@@ -58,7 +58,7 @@ phases_left called_model<R>::check_uses(ensemble_data<R>& data, const options& o
     check_ended(data, o, count);
     check_scales(data, facts.scales_tolerances);
     check_sample_times(data, o, count);
-    check_paths(data, o, count);
+    check_paths(data, o, count, facts.adaptive());
     const argument_head<R> inputs = inputs_in(data);
     if (enter_thread) enter_thread();
     check_event_tolerances<R>(data, o, count, {functions, inputs});

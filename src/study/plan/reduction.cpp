@@ -138,6 +138,94 @@ private:
     std::vector<double> count_;
 };
 
+/// Sums of numbers and of their squares.
+class moments_state final : public reduction_state {
+public:
+    moments_state(std::string of, std::int64_t size, bool of_mean)
+        : of_(std::move(of)), of_mean_(of_mean), sum_(size), squares_(size), count_(static_cast<std::size_t>(size)),
+          squared_(count_) {}
+
+    void add(const chunk_columns& chunk) override {
+        for_each_value(chunk, of_, [this](std::size_t j, double value) {
+            if (!std::isfinite(value)) return;
+            sum_[j].add(value);
+            ++count_[j];
+            const detail::exact_square square = detail::square_of(value);
+            if (!square.is_known) return;
+            squares_[j].add(square.rounded);
+            squares_[j].add(square.rest);
+            ++squared_[j];
+        });
+    }
+    void add(std::span<const double> partial) override {
+        const std::size_t n = count_.size();
+        sum_.add(partial.first(n * sums::stored));
+        squares_.add(partial.subspan(n * sums::stored, n * sums::stored));
+        const auto counts = partial.last(2 * n);
+        for (std::size_t j = 0; j < n; ++j) {
+            count_[j] += counts[j];
+            squared_[j] += counts[n + j];
+        }
+    }
+    void add_words(std::span<const std::int64_t> words) override {
+        constexpr std::size_t of_sum = sums::stored + 1;
+        for (std::size_t j = 0; j < count_.size(); ++j) {
+            const auto values = words.subspan(j * of_sum, of_sum),
+                       squares = words.subspan((count_.size() + j) * of_sum, of_sum);
+            sum_[j].add(values.first<sums::stored>());
+            squares_[j].add(squares.first<sums::stored>());
+            count_[j] += static_cast<double>(values.back());
+            squared_[j] += static_cast<double>(squares.back());
+        }
+    }
+    std::vector<double> partial() override {
+        std::vector<double> all;
+        sum_.store(all);
+        squares_.store(all);
+        all.insert(all.end(), count_.begin(), count_.end());
+        all.insert(all.end(), squared_.begin(), squared_.end());
+        return all;
+    }
+    std::vector<std::vector<double>> results() override {
+        std::vector<double> found(count_.size());
+        for (std::size_t j = 0; j < found.size(); ++j) {
+            const double variance = deviations(j) / (count_[j] - 1);
+            found[j] = of_mean_ ? std::sqrt(variance / count_[j]) : variance;
+        }
+        return {found};
+    }
+
+private:
+    /// The sum of the squares of deviations from the mean, NaN of less than two numbers. That from the rounded mean m
+    /// is exact, S2 - 2 m S1 + n m^2, and rounded once.
+    double deviations(std::size_t j) {
+        const double n = count_[j];
+        if (n < 2 || squared_[j] != n) return std::numeric_limits<double>::quiet_NaN();
+        const double mean = sum_[j].value() / n;
+        exact_sum all = squares_[j], rest = sum_[j], beyond = sum_[j];
+        const auto add_product = [](exact_sum& to, double a, double b) {
+            const double product = a * b;
+            to.add(product);
+            to.add(std::fma(a, b, -product));
+        };
+        for (double part = rest.value(); part != 0; part = rest.value()) {
+            add_product(all, -2 * mean, part);
+            rest.add(-part);
+        }
+        const detail::exact_square square = detail::square_of(mean);
+        add_product(all, n, square.rounded);
+        add_product(all, n, square.rest);
+        add_product(beyond, -n, mean);
+        const double off = beyond.value();  // n times what the mean was rounded by
+        return std::fmax(all.value() - off * (off / n), 0);
+    }
+
+    std::string of_;
+    bool of_mean_;
+    sums sum_, squares_;
+    std::vector<double> count_, squared_;
+};
+
 using user_function = std::function<void(const chunk_columns&, std::span<double>)>;
 
 class user_state final : public reduction_state {
@@ -199,6 +287,15 @@ ensemble_reduction maximum_of(std::string_view of) {
 }
 ensemble_reduction mean_of(std::string_view of) {
     return one_value<mean_state>(of, "mean", exact_sum::digits + 1, detail::reduction_kind::sum);
+}
+
+ensemble_reduction variance_of(std::string_view of) {
+    return one_value<moments_state>(of, "variance", 2 * (exact_sum::digits + 1), detail::reduction_kind::moments,
+                                    false);
+}
+ensemble_reduction standard_error_of(std::string_view of) {
+    return one_value<moments_state>(of, "standard_error", 2 * (exact_sum::digits + 1), detail::reduction_kind::moments,
+                                    true);
 }
 
 ensemble_reduction sum_of(std::string name, std::vector<std::string> of, std::int64_t size, user_function function) {

@@ -198,10 +198,17 @@ public:
                     continue;
                 }
                 if (!is_finite_number(value)) continue;
-                if (how.kind == reduction_kind::sum) {
-                    const digits_of_number d = digits_of(value);
-                    for (int k = 0; k < 3; ++k) word(j * (sum_digits + 1) + d.first + k) += d.digit[k];
-                    ++word(j * (sum_digits + 1) + sum_digits);
+                const auto add = [&](std::int64_t sum, double number, int counted) {
+                    const digits_of_number d = digits_of(number);
+                    for (int k = 0; k < 3; ++k) word(sum * (sum_digits + 1) + d.first + k) += d.digit[k];
+                    word(sum * (sum_digits + 1) + sum_digits) += counted;
+                };
+                if (how.kind == reduction_kind::sum || how.kind == reduction_kind::moments) {
+                    add(j, value, 1);
+                    const exact_square square = square_of(value);
+                    if (how.kind == reduction_kind::sum || !square.is_known) continue;
+                    add(all.inner + j, square.rounded, 1);
+                    add(all.inner + j, square.rest, 0);
                 } else {
                     const auto place = ordered(how.kind == reduction_kind::minimum ? -value : value);
                     word(j) = static_cast<std::int64_t>(std::max(static_cast<std::uint64_t>(word(j)), place));

@@ -40,6 +40,8 @@ run_statistics run_in_teams(const any_arguments<double>& from, const run_options
     static std::int64_t turns;
     static_cast<argument_head<double>&>(arguments) = from;
     std::memcpy(static_cast<arrays*>(&arguments), from.arrays, sizeof(arrays));
+    if constexpr (has_diffusion<Model>)
+        std::memcpy(&arguments.noise, from.arrays + from.offsets().noise, sizeof(arguments.noise));
     part::stage_tolerances(arguments, 0, 1);
     simulated::run_team(threads, [] {
         each_instance instances{arguments.size};

@@ -97,6 +97,8 @@ using teams::adapting_cells;
 using teams::drifters;
 using teams::hoppers;
 using teams::metered_line;
+using teams::noisy_places;
+using teams::noisy_points;
 using teams::phases;
 using teams::places;
 using teams::ring;
@@ -233,4 +235,34 @@ TEST_CASE("a team of threads stops at the limit of steps as one thread does") {
     integrate<teams::with_memory>(together, options);
     CHECK(together.status(0) == myriad::status::max_steps);
     compare(alone, together);
+}
+
+TEST_CASE("units with noise of their own have the same paths written as a whole, in one thread and in teams") {
+    const auto steps = [](double step) {
+        myriad::options o{.step = step, .seed = 5, .noise_step = 0.02};
+        o.phases = 2;
+        o.phase_length = 0.7;
+        return o;
+    };
+    auto whole = ensemble_of<teams::whole_of_points>();
+    auto units = ensemble_of<noisy_points<1>>();
+    integrate<myriad::euler_maruyama>(whole, steps(0.02));
+    integrate<myriad::euler_maruyama>(units, steps(0.02));
+    for (int c = 0; c < teams::whole_of_points::n_state; ++c) CHECK((whole.state(c) == units.state(c)).all());
+    CHECK((whole.state(0) - whole.state(1)).abs().minCoeff() > 0);
+    compare<myriad::euler_maruyama, noisy_points<1>, noisy_points<4>>(steps(0.02));
+    compare<myriad::sra1, noisy_points<1>, noisy_points<16>>(steps(0.01));
+    compare<myriad::milstein, noisy_places<1>, noisy_places<4>>(steps(0.02));
+    auto by_halves = tolerances(22);
+    by_halves.relative_tolerance = 1e-3;
+    by_halves.absolute_tolerance = 1e-3;
+    by_halves.seed = 5;
+    compare<teams::sriw1_by_halves, noisy_places<1>, noisy_places<8>>(by_halves);
+}
+
+TEST_CASE("noise of units is found to be additive, or to depend on each state's own alone") {
+    using namespace myriad::detail;
+    CHECK(is_additive<myriad::coupled_units<teams::noisy_point, 100>>);
+    CHECK_FALSE(is_additive<myriad::coupled_units<teams::noisy_place, 100>>);
+    CHECK_FALSE(dependence_of_noise<myriad::coupled_units<teams::noisy_place, 100>>.on_other_states);
 }

@@ -22,6 +22,44 @@ struct place {
     }
 };
 
+/// The same with noise: one state that is noisy by its size, in a system with another that has additive noise.
+struct noisy_place {
+    enum unit_state { x, memory, n_unit_state };
+    enum parameter { F, n_parameter };
+    enum unit_parameter { strength, n_unit_parameter };
+    enum publication { level, n_publication };
+    static constexpr myriad::coupling couplings[] = {myriad::circulant_coupling(level, 1)};
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_publication> publish(int, auto, const auto& y, const auto&) {
+        return myriad::vec<R, n_publication>{y[memory]};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_unit_state> rhs(int unit, auto, const auto& y, const auto& p) {
+        return {p[F] - y[x] + R(0.1) * y.of((unit + 1) % y.units)[x] + y.coupled(0), y[x] - R(3) * y[memory]};
+    }
+    // snippet: diffusion
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_unit_state> diffusion(int unit, auto, const auto& y, const auto& p) {
+        return {R(0.1) * p.unit_parameter[strength] * y[x], R(0.2 + 0.01 * unit)};
+    }
+    // end of snippet
+};
+/// Of one state each, so that units share groups of processes.
+struct noisy_point {
+    enum unit_state { x, n_unit_state };
+    enum parameter { F, n_parameter };
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_unit_state> rhs(int unit, auto, const auto& y, const auto& p) {
+        return myriad::vec<R, n_unit_state>{p[F] * (y.of((unit + 1) % y.units)[x] - y[x])};
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_unit_state> diffusion(int, auto t, const auto&, const auto& p) {
+        return myriad::vec<R, n_unit_state>{R(p[F] + t)};
+    }
+};
+
 /// Balls on springs between neighbours, which fall on a table; where one lands, it takes a part of every other's speed.
 /// Hooks of every kind, events, and stop times at which the system is kicked.
 struct hopper {
@@ -255,6 +293,33 @@ template <int threads>
 using metered_line = myriad::coupled_units<of_team<metered, threads>, 18>;
 template <int threads>
 using adapting_cells = myriad::coupled_units<of_team<adapting, threads>, 17>;
+template <int threads>
+using noisy_places = myriad::coupled_units<of_team<noisy_place, threads>, 11>;
+template <int threads>
+struct noisy_point_of_team : of_team<noisy_point, threads> {
+    static constexpr bool additive_noise = true;  // of a model with `scalar_only` that is not found
+};
+template <int threads>
+using noisy_points = myriad::coupled_units<noisy_point_of_team<threads>, 13>;
+/// The last, written as a whole.
+struct whole_of_points {
+    static constexpr int n_state = 13, n_parameter = 1, n_shared = 0, n_accessory = 0, n_integer_accessory = 0;
+
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> rhs(auto, const myriad::vec<R, n_state>& y, const auto& p) {
+        myriad::vec<R, n_state> slopes;
+        for (int i = 0; i < n_state; ++i) slopes[i] = p[0] * (y[(i + 1) % n_state] - y[i]);
+        return slopes;
+    }
+    template <class R>
+    MYRIAD_FUNCTION static myriad::vec<R, n_state> diffusion(auto t, const myriad::vec<R, n_state>&, const auto& p) {
+        myriad::vec<R, n_state> factors;
+        for (int i = 0; i < n_state; ++i) factors[i] = R(p[0] + t);
+        return factors;
+    }
+};
+
+using sriw1_by_halves = myriad::adaptive<myriad::sriw1>;
 
 using with_memory = myriad::controlled<myriad::dormand_prince_5, myriad::pi_control>;
 using sampled = myriad::dense<myriad::dormand_prince_5>;

@@ -127,6 +127,23 @@ TEST_CASE("Extrema and means are of each phase, and leave failed instances and N
     CHECK(std::isnan(data.first_of(minimum_of("x"))[0]));
     CHECK(std::isnan(data.first_of(mean_of("x"))[1]));
 }
+TEST_CASE("Variances and standard errors are exact where deviations are far below the values", "[reduction]") {
+    made_up data({1, 10, 2, not_a_number, 3, 30, -100, 1000}, 2);
+    data.fail(3);
+    CHECK(data.first_of(variance_of("x")) == std::vector<double>{1, 200});
+    CHECK(data.first_of(standard_error_of("x")) == std::vector<double>{std::sqrt(1.0 / 3), 10});
+    CHECK(std::isnan(made_up({5}).first_of(variance_of("x"))[0]));
+    CHECK(made_up({5, 5, 5}).first_of(variance_of("x")) == std::vector<double>{0});
+    // 1e9 and a few of its last bits: sums of squares in double would have no digit of the variance.
+    constexpr double bit = 0x1p-23;
+    CHECK(made_up({1e9, 1e9 + bit, 1e9 + 2 * bit}).first_of(variance_of("x")) == std::vector<double>{bit * bit});
+    CHECK(made_up({1e9, 1e9 + bit, 1e9 + bit}).first_of(variance_of("x"))[0] == Approx(bit * bit / 3).epsilon(1e-15));
+    // A mean that is rounded by far more than the deviations: 1 + 2^-53 here.
+    CHECK(made_up({1, 1 + 0x1p-52}).first_of(variance_of("x"))[0] == 0x1p-105);
+    CHECK(made_up({-1e-150, 1e-150}).first_of(variance_of("x"))[0] == Approx(2e-300));
+    CHECK(made_up({1e140, -1e140}).first_of(variance_of("x"))[0] == Approx(2e280));
+    CHECK(std::isnan(made_up({1e150, 1, 2}).first_of(variance_of("x"))[0]));
+}
 TEST_CASE("A mean near the largest number is finite, where the sum is not", "[reduction]") {
     constexpr double largest = std::numeric_limits<double>::max();
     CHECK(made_up({largest, largest, largest}).first_of(mean_of("x")) == std::vector<double>{largest});
@@ -169,7 +186,7 @@ TEST_CASE("Reductions have the same bits whatever the chunks are", "[reduction]"
     for (const ensemble_reduction& r :
          {histogram_of("x", linspace(-1e3, 1e19, 50)), histograms_of("x", linspace(-1e3, 1e19, 50)),
           quantiles_of("x", {0.1, 0.5}, linspace(-1e3, 1e19, 50)), minimum_of("x"), maximum_of("x"), mean_of("x"),
-          user}) {
+          variance_of("x"), standard_error_of("x"), user}) {
         const auto whole = data.reduce(r, 1000);
         for (const std::size_t chunk : std::vector<std::size_t>{1, 7, 512, 999}) CHECK(data.reduce(r, chunk) == whole);
     }

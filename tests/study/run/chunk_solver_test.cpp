@@ -55,6 +55,7 @@ void reduce_all(any_study& s, const std::string& name, const axis_values& edges)
     s.reduce(minimum_of(name));
     s.reduce(maximum_of(name));
     s.reduce(mean_of(name));
+    s.reduce(variance_of(name));
 }
 
 }  // namespace

@@ -64,13 +64,17 @@ class thread_sum {
 public:
     __device__ explicit thread_sum(unsigned long long* to) : to_(to) {}
     __device__ void add(double value) {
+        add_rest(value);
+        ++count_;
+    }
+    /// What belongs to a number that was added.
+    __device__ void add_rest(double value) {
         const digits_of_number digits = detail::digits_of(value);
         if (digits.first != first_) {
             flush();
             first_ = digits.first;
         }
         for (int k = 0; k < 3; ++k) digit_[k] += digits.digit[k];
-        ++count_;
     }
     __device__ void flush() {
         for (int k = 0; k < 3; ++k) {
@@ -133,8 +137,10 @@ MYRIAD_STUDY_KERNEL void reduce_values(const __grid_constant__ reduce_arguments 
         return;
     }
     constexpr int words_of_sum = sum_digits + 1;
-    for (std::int64_t j = blockIdx.y; j < a.all.inner; j += gridDim.y) {
-        const bool is_sum = a.kind == reduction_kind::sum;
+    const std::int64_t inner = a.all.inner, all_inner = a.kind == reduction_kind::moments ? 2 * inner : inner;
+    for (std::int64_t j = blockIdx.y; j < all_inner; j += gridDim.y) {
+        const bool is_sum = a.kind == reduction_kind::sum || a.kind == reduction_kind::moments;
+        const bool squares = j >= inner;
         const int words = is_sum ? words_of_sum : 1;
         for (int w = static_cast<int>(threadIdx.x); w < words; w += static_cast<int>(blockDim.x))
             reduced_in_block[w] = 0;
@@ -143,9 +149,14 @@ MYRIAD_STUDY_KERNEL void reduce_values(const __grid_constant__ reduce_arguments 
         unsigned long long most = 0;
         for (std::int64_t i = thread_number(); i < a.all.size; i += all_threads()) {
             if (is_failure(a.how[i])) continue;
-            const double value = detail::value_at(a.all, i, j);
+            const double value = detail::value_at(a.all, i, squares ? j - inner : j);
             if (!detail::is_finite_number(value)) continue;
-            if (is_sum) {
+            if (squares) {
+                const exact_square square = detail::square_of(value);
+                if (!square.is_known) continue;
+                sum.add(square.rounded);
+                sum.add_rest(square.rest);
+            } else if (is_sum) {
                 sum.add(value);
             } else {
                 const std::uint64_t place = detail::ordered(a.kind == reduction_kind::minimum ? -value : value);

@@ -112,6 +112,8 @@ struct device_reduction {
                 return inner * (static_cast<std::int64_t>(edges.size()) + 2);
             case reduction_kind::sum:
                 return inner * (sum_digits + 1);
+            case reduction_kind::moments:
+                return 2 * inner * (sum_digits + 1);
             case reduction_kind::statuses:
                 return status_count;
             default:

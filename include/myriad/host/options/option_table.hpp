@@ -236,7 +236,8 @@ struct option_table<options> {
                      "seed of the paths of a stochastic equation", "give a whole number from 0 on"},
         option_entry{"noise_step", &o::noise_step, results, "time", at_least(0),
                      "cells of these paths: steps that are a multiple of one, or a number of 65536ths of one, follow "
-                     "the same path; 0: the step",
+                     "the same path; the longest adaptive step; 0: the step, or for adaptive ones a 64th of the domain "
+                     "or phase",
                      "give the longest of the steps that are to follow one path, or 0 for the step"},
         option_entry{"history_steps", &o::history_steps, results, "steps", from_to(0, 1048576),
                      "steps of the past that are kept of each instance of a model with delays; 0: 256 adaptive steps, "

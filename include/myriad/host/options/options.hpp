@@ -146,7 +146,8 @@ struct options {
     /// The seed of the paths of a stochastic equation (`diffusion`), from 0 to 2^32 - 1.
     std::int64_t seed = 0;
     /// The cells of these paths, in time: steps that are a multiple of one, or a number of 65536ths of one, follow the
-    /// same path. 0: the step.
+    /// same path. Adaptive steps are one at the most, or its half, a quarter and so on. 0: the step; for adaptive steps
+    /// a 64th of the domain, or of `phase_length`.
     double noise_step = 0;
 
     /// Steps of the past that are kept of each instance of a model with delays, rounded up to a power of two: those

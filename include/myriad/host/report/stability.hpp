@@ -13,7 +13,8 @@ namespace myriad::host::inline MYRIAD_ABI {
 
 /// Whether steps of a method may be limited by stability.
 template <class Method>
-inline constexpr bool may_be_unstable = Method::embedded_order > 0 && !detail::solves_linear_systems<Method>;
+inline constexpr bool may_be_unstable =
+    Method::embedded_order > 0 && !detail::solves_linear_systems<Method> && !detail::stochastic_method<Method>;
 /// Whether a stiff method may be worth advising. Stiff methods do not support tangents.
 template <class Model, class Method>
 inline constexpr bool may_advise_stiff_methods =

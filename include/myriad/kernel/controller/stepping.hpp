@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "myriad/kernel/controller/adaptive.hpp"
+#include "myriad/kernel/controller/adaptive_on_path.hpp"
 #include "myriad/kernel/controller/fixed.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
@@ -30,6 +31,8 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 ///                                    every so many iterations: will the phase never end? 0: no check
 template <class Model, class Method, class S>
 using stepping =
-    std::conditional_t<is_adaptive<Method>, adaptive_stepping<Model, Method, S>, fixed_stepping<Model, Method, S>>;
+    std::conditional_t<!is_adaptive<Method>, fixed_stepping<Model, Method, S>,
+                       std::conditional_t<stochastic_method<Method>, adaptive_stepping_on_path<Model, Method, S>,
+                                          adaptive_stepping<Model, Method, S>>>;
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET

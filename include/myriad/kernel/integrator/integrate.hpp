@@ -141,7 +141,7 @@ struct integrator {
             }
         }
         watchdog.schedule();
-        if constexpr (is_adaptive<Method>) {
+        if constexpr (is_adaptive<Method> && !stochastic_method<Method>) {
             const mask open = begun & (s.data.h_next == S(R(0)));
             if (any(open)) detail::choose_first_step(args, s, open);
         }

@@ -25,6 +25,10 @@ template <class Model, class Method>
 constexpr bool runs_in_teams() {
     if constexpr (!is_of_units<Model> || rosenbrock_method<Method>) {
         return false;
+    } else if constexpr (stochastic_method<Method>) {
+        // Others evaluate factors of one process after the other, or find events by factors of all.
+        constexpr bool by_states = Method::strong_order != 0 && !uses_jacobian<Method>;
+        return by_states && !has_events<Model> && !has_summaries<Model>;
     } else if constexpr (has_delays<Model>) {
         return !has_changing_lags_of_units<typename Model::unit_type> &&
                team_layout<Model>::end * static_cast<int>(sizeof(double)) <= most_bytes_of_team;

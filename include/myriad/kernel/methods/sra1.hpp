@@ -10,7 +10,8 @@
 namespace myriad {
 
 /// A Runge-Kutta method for additive noise, for which Ito and Stratonovich equations are the same: fixed steps, strong
-/// order 3/2, weak order 2. Source: Roessler, SIAM J. Numer. Anal. 48 (2010) 922-952.
+/// order 3/2, weak order 2, or with `adaptive<sra1>` adaptive ones. Source: Roessler, SIAM J. Numer. Anal. 48 (2010)
+/// 922-952; the error estimate: after Rackauckas and Nie, Discrete Contin. Dyn. Syst. B 22 (2017) 2731-2761.
 struct sra1 {
     static constexpr int stages = 2;
     static constexpr int embedded_order = 0;
@@ -19,11 +20,14 @@ struct sra1 {
     static constexpr double weak_order = 2;                      ///< with which means over paths converge
     static constexpr noise_taken noise = noise_taken::additive;  ///< which it takes
     static constexpr bool uses_integrals = true;                 ///< of the path over each step
+    static constexpr bool estimates_error = true;                ///< for `adaptive`
 
-    /// The state at t1, which is t + h up to rounding; `slope` is the drift at (t, y).
-    template <class Equation, class S, detail::extent n>
+    /// The state at t1, which is t + h up to rounding; `slope` is the drift at (t, y). If asked for the `error`, it is
+    /// estimated in the mean over what the path may do, with another evaluation of the drift: an estimate along the
+    /// path would have longer steps where the path moves little, and errors of the steps would not average out.
+    template <class Equation, class S, detail::extent n, class... Error>
     MYRIAD_FUNCTION static vec<S, n> step(const Equation& equation, const S& t, const S& h, const S& t1,
-                                          const vec<S, n>& y, const vec<S, n>& slope) {
+                                          const vec<S, n>& y, const vec<S, n>& slope, Error&... error) {
         using R = real_of<S>;
         // of the mean of W - W(t) over the step, and of what the increment has more
         const auto mean = equation.mean_increments(h);
@@ -40,6 +44,21 @@ struct sra1 {
         for (int c = 0; c < MYRIAD_LENGTH(n); ++c)
             y1[c] =
                 y[c] + fma(h, fma(third, slope[c], two_thirds * slope_inside[c]), whole[c] + (at_begin[c] - at_end[c]));
+        if constexpr (sizeof...(Error) != 0) {
+            const S deviation = sqrt(abs(h) * third);  // of the mean of W - W(t)
+            const vec<S, n> kick = equation.spread(t1, y, deviation);
+            vec<S, n> beside;
+            MYRIAD_UNROLL_UP_TO(64, 16)
+            for (int c = 0; c < MYRIAD_LENGTH(n); ++c) {
+                const S by_drift = S(R(0.75)) * h * slope[c];
+                beside[c] = y[c] + (by_drift + copysign(S(R(1.5)) * kick[c], by_drift));
+            }
+            const vec<S, n> slope_beside = equation.drift(fma(S(R(0.75)), h, t), beside),
+                            begin = equation.spread(t, y, deviation);
+            MYRIAD_UNROLL_UP_TO(64, 16)
+            for (int c = 0; c < MYRIAD_LENGTH(n); ++c)
+                ((error[c] = fma(two_thirds, abs(h * (slope_beside[c] - slope[c])), abs(begin[c] - kick[c]))), ...);
+        }
         return y1;
     }
 };

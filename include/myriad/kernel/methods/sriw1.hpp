@@ -9,8 +9,10 @@
 
 namespace myriad {
 
-/// A Runge-Kutta method for Ito equations with diagonal noise: fixed steps, strong order 3/2. It needs no derivatives.
-/// Source: Roessler, SIAM J. Numer. Anal. 48 (2010) 922-952, scheme SRIW1; its SRI1 is another, of order 1.
+/// A Runge-Kutta method for Ito equations with diagonal noise: strong order 3/2, with fixed steps, or with
+/// `adaptive<sriw1>` adaptive ones. It needs no derivatives. Source: Roessler, SIAM J. Numer. Anal. 48 (2010) 922-952,
+/// scheme SRIW1; its SRI1 is another, of order 1. The error estimate: after Rackauckas and Nie, Discrete Contin. Dyn.
+/// Syst. B 22 (2017) 2731-2761.
 struct sriw1 {
     static constexpr int stages = 2;
     static constexpr int embedded_order = 0;
@@ -19,11 +21,14 @@ struct sriw1 {
     static constexpr double weak_order = 1.5;                    ///< with which means over paths converge
     static constexpr noise_taken noise = noise_taken::diagonal;  ///< which it takes
     static constexpr bool uses_integrals = true;                 ///< of the path over each step
+    static constexpr bool estimates_error = true;                ///< for `adaptive`
 
-    /// The state at t1, which is t + h up to rounding; `slope` is the drift at (t, y).
-    template <class Equation, class S, detail::extent n>
+    /// The state at t1, which is t + h up to rounding; `slope` is the drift at (t, y). If asked for the `error`, it is
+    /// estimated in the mean over what the path may do, with another evaluation of the drift: an estimate along the
+    /// path would have longer steps where the path moves little, and errors of the steps would not average out.
+    template <class Equation, class S, detail::extent n, class... Error>
     MYRIAD_FUNCTION static vec<S, n> step(const Equation& equation, const S& t, const S& h, const S& t1,
-                                          const vec<S, n>& y, const vec<S, n>& slope) {
+                                          const vec<S, n>& y, const vec<S, n>& slope, Error&... error) {
         using R = real_of<S>;
         constexpr auto m = Equation::m;
         const S quarter(R(0.25)), half(R(0.5)), third(R(1.0 / 3)), length = abs(h), root = sqrt(length);
@@ -68,6 +73,27 @@ struct sriw1 {
         for (int c = 0; c < MYRIAD_LENGTH(n); ++c)
             y1[c] = y[c] + (fma(h * third, fma(S(R(2)), slope_inside[c], slope[c]), first_noise[c] + second_noise[c]) +
                             (third_noise[c] + fourth_noise[c]));
+        if constexpr (sizeof...(Error) != 0) {
+            const vec<S, n> kick_fourth = equation.times(t_quarter, fourth, roots),
+                            kick = equation.spread(t, y, sqrt(length * third));
+            vec<S, n> beside;
+            MYRIAD_UNROLL_UP_TO(64, 16)
+            for (int c = 0; c < MYRIAD_LENGTH(n); ++c) {
+                const S by_drift = S(R(0.75)) * h * slope[c];
+                beside[c] = y[c] + (by_drift + copysign(S(R(1.5)) * kick[c], by_drift));
+            }
+            const vec<S, n> slope_beside = equation.drift(fma(S(R(0.75)), h, t), beside);
+            MYRIAD_UNROLL_UP_TO(64, 16)
+            for (int c = 0; c < MYRIAD_LENGTH(n); ++c) {
+                // The factors of I(1,0) / h and I(1,1,1) / h, which have variances h / 3 and h / 6.
+                const S of_integral =
+                    S(R(2)) * kick_first[c] - third * fma(S(R(4)), kick_second[c], S(R(2)) * kick_last[c]);
+                const S of_cube = (kick_fourth[c] - S(R(2)) * kick_first[c]) +
+                                  third * fma(S(R(5)), kick_second[c], S(R(-2)) * kick_last[c]);
+                const S by_noise = sqrt(third * fma(of_integral, of_integral, S(R(0.5)) * of_cube * of_cube));
+                ((error[c] = fma(S(R(2.0 / 3)), abs(h * (slope_beside[c] - slope[c])), by_noise)), ...);
+            }
+        }
         return y1;
     }
 };

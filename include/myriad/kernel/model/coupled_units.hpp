@@ -153,7 +153,9 @@ constexpr bool check_units() {
                   "units that observe have both `enum unit_observed { ..., n_unit_observed };` and a function "
                   "`observe`");
     static_assert(!has_triggers<Unit>, "coupled units have no triggers: give an event an action");
-    static_assert(!has_diffusion<Unit>, "coupled units have no diffusion yet: write the system as one model");
+    static_assert(!has_diffusion<Unit> || n_noise<Unit> == 0,
+                  "the noise of coupled units is a factor for each state of a unit, each with a Wiener process of its "
+                  "own: leave out `enum noise`, or write the system as one model");
     static_assert(!has_jacobian<Unit>, "coupled units have no jacobian: it comes from rhs by dual numbers");
     constexpr int team = declared_team<Unit>();
     static_assert(team == 0 || is_size_of_team(team), "threads_per_instance is not a power of two from 1 to 256");

@@ -30,7 +30,13 @@ MYRIAD_FORWARDED(with_observe, with_events, has_observe<Model>){
 }
 }
 ;
-MYRIAD_FORWARDED(with_initialise, with_observe,
+MYRIAD_FORWARDED(with_diffusion, with_observe, has_diffusion<Model>){
+    template <class R> MYRIAD_FUNCTION static auto diffusion(auto t, const auto& y,
+                                                             const auto& p){return To::template diffusion<R>(t, y, p);
+}
+}
+;
+MYRIAD_FORWARDED(with_initialise, with_diffusion,
                  has_initialise<Model>){MYRIAD_FUNCTION static void initialise(auto& lane){To::initialise(lane);
 }
 }

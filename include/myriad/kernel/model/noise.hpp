@@ -70,7 +70,9 @@ constexpr noise_dependence trace_noise() {
 
 template <class Model>
 constexpr noise_dependence dependence_of_noise_of() {
-    if constexpr (!scalar_only<Model> && n_state<Model> <= largest_traced_system) {
+    if constexpr (team_size<Model> != 1) {
+        return dependence_of_noise_of<whole_of<Model>>();
+    } else if constexpr (!scalar_only<Model> && n_state<Model> <= largest_traced_system) {
         if constexpr (requires { typename std::bool_constant<(trace_noise<Model>(), true)>; })
             return trace_noise<Model>();
     }
@@ -83,7 +85,7 @@ inline constexpr noise_dependence dependence_of_noise = dependence_of_noise_of<M
 
 /// Whether the diffusion does not depend on the state: as declared, or found.
 template <class Model>
-inline constexpr bool is_additive = additive_noise<Model> || !dependence_of_noise<Model>.on_states;
+inline constexpr bool is_additive = additive_noise<whole_of<Model>> || !dependence_of_noise<Model>.on_states;
 
 /// The most Wiener processes that the counters of a path have room for.
 template <class R>
@@ -101,7 +103,7 @@ constexpr bool check_noise() {
         static_assert(stochastic_method<Method>,
                       "the model has a diffusion, which methods for ordinary equations would ignore: use "
                       "euler_maruyama, or another method for noise");
-        static_assert(n_wiener<Model> <= most_processes<R>,
+        static_assert(n_wiener<whole_of<Model>> <= most_processes<R>,
                       "the model has more than 256 Wiener processes, or 512 in single precision: more than the "
                       "counters of a path have room for");
         static_assert(!has_triggers<Model>,
@@ -124,6 +126,9 @@ constexpr bool check_noise() {
                 (!has_events<Model> && !has_summaries<Model>) || !uses_jacobian<Method>,
                 "this method is for steps in which a stiff drift undoes the noise, and events and extrema are "
                 "found within steps as if it did not: use euler_maruyama with steps that resolve the drift");
+            static_assert((!has_events<Model> && !has_summaries<Model>) || Method::embedded_order == 0,
+                          "events and extrema of a model with a diffusion are found in fixed steps alone yet: use the "
+                          "method without `adaptive`, and give options::step");
             if constexpr (Method::noise == noise_taken::additive)
                 static_assert(
                     is_additive<Model>,

@@ -337,6 +337,22 @@ struct part_of_units : part_summaries<Whole, (Whole::n_unit + threads - 1) / thr
         return static_cast<action>(together::of_leader(static_cast<int>(wanted)));
     }
 
+    /// The factors of the noise of the thread's units.
+    template <class S>
+    MYRIAD_FUNCTION static vec<S, n_state> diffusion(auto t, const vec<S, n_state>& y, const auto& p) {
+        using R = real_of<S>;
+        const team_inputs<R> inputs = inputs_of_team<R>(p);
+        vec<S, n_state> factors;
+        MYRIAD_UNROLL
+        for (int part = 0; part < parts; ++part) {
+            const auto of_unit = detail::factors_of_unit<unit_type, S>(
+                unit_of(part), t, y.values + part * states_of_unit,
+                unit_inputs<unit_type, units, R, R, team_inputs<R>>(inputs, unit_of(part)));
+            MYRIAD_UNROLL
+            for (int c = 0; c < states_of_unit; ++c) factors[part * states_of_unit + c] = of_unit[c];
+        }
+        return factors;
+    }
     /// The slopes of the thread's units.
     template <class R>
     MYRIAD_FUNCTION static vec<R, n_state> rhs(auto t, const vec<R, n_state>& y, const auto& p) {

@@ -118,26 +118,35 @@ MYRIAD_CALLED_FUNCTION increments_with_integrals<S, normals_per_block<real_of<S>
     return found;
 }
 
+/// The same for a step, which is a `whole_cell` or not.
+template <class S>
+MYRIAD_FUNCTION increments_with_integrals<S, normals_per_block<real_of<S>>> integrals_of_group(
+    const path_interval<S>& over, bool whole_cell, int group) {
+    using R = real_of<S>;
+    constexpr int per_group = normals_per_block<R>;
+    increments_with_integrals<S, per_group> of_group;
+    if (whole_cell) {
+        group_increments<S> h;
+        detail::draw_cell<S>(over.from.cell, over.of, over.constants, group, of_group.increment, h);
+        MYRIAD_UNROLL
+        for (int k = 0; k < per_group; ++k)
+            of_group.integral[k] = S(over.constants.cell) * fma(S(R(0.5)), of_group.increment[k], h[k]);
+    } else {
+        of_group = detail::integrals_between<S>(over, group);
+    }
+    return of_group;
+}
+
 /// The increments of so many processes over a step, and the integrals of W(s) - W(from) over it. At the ends of cells
 /// the path is that of `path_increments`; within one it is another.
 template <int processes, class S>
 MYRIAD_FUNCTION increments_with_integrals<S, processes> path_integrals(const path_interval<S>& over) {
-    using R = real_of<S>;
-    constexpr int per_group = normals_per_block<R>;
+    constexpr int per_group = normals_per_block<real_of<S>>;
     const bool whole_cell = detail::is_one_cell(over);
     increments_with_integrals<S, processes> all;
     static_for<0, (processes + per_group - 1) / per_group>([&](auto g) MYRIAD_LAMBDA {
         constexpr int group = decltype(g)::value;
-        increments_with_integrals<S, per_group> of_group;
-        if (whole_cell) {
-            group_increments<S> h;
-            detail::draw_cell<S>(over.from.cell, over.of, over.constants, group, of_group.increment, h);
-            MYRIAD_UNROLL
-            for (int k = 0; k < per_group; ++k)
-                of_group.integral[k] = S(over.constants.cell) * fma(S(R(0.5)), of_group.increment[k], h[k]);
-        } else {
-            of_group = detail::integrals_between<S>(over, group);
-        }
+        const auto of_group = detail::integrals_of_group(over, whole_cell, group);
         MYRIAD_UNROLL
         for (int k = 0; k < per_group; ++k) {
             if (group * per_group + k >= processes) continue;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <concepts>
 #include <type_traits>
 #include <utility>
 
@@ -78,6 +79,30 @@ constexpr auto summaries_of_units() {
     (std::make_integer_sequence<int, units * count>{});
 }
 
+/// Refuses a diffusion with a wrong signature, and shows the right one. The arguments' values are unused.
+template <class Unit, class R, class T, class Inputs>
+constexpr bool check_unit_diffusion(const T* t = nullptr, const state_of_unit<Unit, R>* y = nullptr,
+                                    Inputs* p = nullptr) {
+    static_cast<void>(t), static_cast<void>(y), static_cast<void>(p);
+    static_assert(
+        requires {
+            { Unit::template diffusion<R>(int{}, *t, *y, *p) } -> std::same_as<vec<R, n_unit_state<Unit>>>;
+        },
+        "diffusion of coupled units has a wrong signature: it must be `template <class R> MYRIAD_FUNCTION static "
+        "myriad::vec<R, n_unit_state> diffusion(int unit, auto t, const auto& y, const auto& p)`, with a factor for "
+        "each state of a unit, of which it sees the unit's own alone, and public");
+    return true;
+}
+template <class Unit, class R, class T, class Inputs>
+inline constexpr bool unit_diffusion_fits = check_unit_diffusion<Unit, R, T, Inputs>();
+
+/// The factors of the noise of one unit, whose states are `own`.
+template <class Unit, class R>
+MYRIAD_FUNCTION auto factors_of_unit(int unit, const auto& t, const R* own, const auto& p) {
+    static_assert(unit_diffusion_fits<Unit, R, std::remove_cvref_t<decltype(t)>, std::remove_reference_t<decltype(p)>>);
+    return Unit::template diffusion<R>(unit, t, state_of_unit<Unit, R>{own}, p);
+}
+
 /// Hooks are called for all units in their order, and the strongest action counts; `after_event` for the unit whose
 /// event it is. See `forwarded_hooks`.
 template <class Unit, int units>
@@ -107,6 +132,18 @@ struct unit_hooks {
             for (int c = 0; c < count; ++c) values[unit * count + c] = of_unit[c];
         });
         return values;
+    }
+
+    template <class R>
+    MYRIAD_FUNCTION static auto diffusion(auto t, const auto& y, const auto& p) {
+        constexpr int count = n_unit_state<Unit>;
+        vec<R, units * count> factors;
+        detail::each_unit<Unit, units>([&](int unit) MYRIAD_LAMBDA {
+            const auto of_unit = detail::factors_of_unit<Unit, R>(unit, t, detail::first_of(y) + unit * count,
+                                                                  detail::inputs_of_unit<Unit, units>(p, unit));
+            for (int c = 0; c < count; ++c) factors[unit * count + c] = of_unit[c];
+        });
+        return factors;
     }
 
     MYRIAD_FUNCTION static void initialise(auto& lane) {

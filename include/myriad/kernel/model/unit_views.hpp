@@ -143,6 +143,18 @@ struct unit_states {
     MYRIAD_FUNCTION unit_states of(int other) const { return {all, detail::checked_unit<n>(other)}; }
 };
 
+/// The state of one unit alone: the argument y of `diffusion`.
+template <class Unit, class S>
+struct state_of_unit {
+    const S* own;  ///< its states
+
+    /// Component c of this unit.
+    template <class C>
+    MYRIAD_FUNCTION const S& operator[](C c) const {
+        return own[detail::unit_index<detail::unit_state_enumeration<Unit>, detail::n_unit_state<Unit>>(c)];
+    }
+};
+
 /// The state of one unit with what all have published, and the sums of couplings: the argument y of rhs.
 template <class Unit, int n, class R>
 struct coupled_states {

@@ -178,24 +178,31 @@ MYRIAD_FUNCTION bool is_one_cell(const path_interval<S>& over) {
                (over.to.cell == over.from.cell + typename path_integers<S>::cell(1)));
 }
 
+/// The increments of the processes of a group over a step, which is a `whole_cell` or not.
+template <class S>
+MYRIAD_FUNCTION group_increments<S> increments_of_group(const path_interval<S>& over, bool whole_cell, int group) {
+    using small = typename path_integers<S>::small;
+    group_increments<S> of_group;
+    if (whole_cell) {
+        of_group = detail::path_normals<S>(over.from.cell, small(0), over.of, over.constants.key, group);
+        MYRIAD_UNROLL
+        for (int k = 0; k < normals_per_block<real_of<S>>; ++k) of_group[k] = S(over.constants.root) * of_group[k];
+    } else {
+        of_group = detail::increments_between<S>(over, group);
+    }
+    return of_group;
+}
+
 /// The increments of so many processes over a step. The same bits whichever way they are computed: lanes of a pack are
 /// neighbours only.
 template <int processes, class S>
 MYRIAD_FUNCTION vec<S, processes> path_increments(const path_interval<S>& over) {
-    using small = typename path_integers<S>::small;
     constexpr int per_group = normals_per_block<real_of<S>>;
     const bool whole_cell = detail::is_one_cell(over);
     vec<S, processes> dw;
     static_for<0, (processes + per_group - 1) / per_group>([&](auto g) MYRIAD_LAMBDA {
         constexpr int group = decltype(g)::value;
-        group_increments<S> of_group;
-        if (whole_cell) {
-            of_group = detail::path_normals<S>(over.from.cell, small(0), over.of, over.constants.key, group);
-            MYRIAD_UNROLL
-            for (int k = 0; k < per_group; ++k) of_group[k] = S(over.constants.root) * of_group[k];
-        } else {
-            of_group = detail::increments_between<S>(over, group);
-        }
+        const group_increments<S> of_group = detail::increments_of_group(over, whole_cell, group);
         MYRIAD_UNROLL
         for (int k = 0; k < per_group; ++k)
             if (group * per_group + k < processes) dw[group * per_group + k] = of_group[k];

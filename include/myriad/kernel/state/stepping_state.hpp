@@ -7,7 +7,7 @@
 
 #include "myriad/kernel/methods/controller_policies.hpp"
 #include "myriad/kernel/methods/stochastic_method.hpp"
-#include "myriad/kernel/model/wiener_path.hpp"
+#include "myriad/kernel/model/path_tree.hpp"
 #include "myriad/kernel/scalar/control_number.hpp"
 #include "myriad/kernel/scalar/lanes.hpp"
 #include "myriad/kernel/scalar/math.hpp"
@@ -74,9 +74,41 @@ struct fixed_state_on_path : fixed_state<S> {
     }
 };
 
+/// Adaptive steps of a stochastic equation. They end at multiples of `step`, which is a cell of the path or a half, a
+/// quarter and so on of one, and at stops.
 template <class Method, class S>
-using stepping_state =
-    std::conditional_t<is_adaptive<Method>, adaptive_state<Method, S>,
-                       std::conditional_t<stochastic_method<Method>, fixed_state_on_path<S>, fixed_state<S>>>;
+struct adaptive_state_on_path {
+    using integers = path_integers<S>;
+    S base;                          // the time at which the path begins
+    S step, end;                     // with its sign; the time at which the trial ends
+    path_place<S> from, to;          // of the trial
+    path_place<S> per_step;          // the step as a place
+    typename integers::small parts;  // of a cell in a step
+    typename integers::small node;   // the same if the trial is over a node of the tree, else 0
+    path_owner<S> path;
+    mask_of<S> between;          // `from` is no multiple of the step
+    mask_of<S> last_not_finite;  // as in `adaptive_state`
+    S tolerance_scale;
+
+    /// A lane without an instance stays where it is.
+    MYRIAD_FUNCTION void clear_path() {
+        from = to = per_step = {typename integers::cell(0), typename integers::small(0)};
+        parts = node = typename integers::small(parts_of_cell);
+        path = {typename integers::word(0), typename integers::word(0)};
+        between = last_not_finite = mask_of<S>(false);
+        base = step = end = S(real_of<S>(0));
+    }
+    MYRIAD_FUNCTION tree_interval<S> interval(const path_constants<real_of<S>>& constants) const {
+        return {{from, to, path, constants}, node};
+    }
+};
+
+template <class Method, class S>
+using adaptive_state_of =
+    std::conditional_t<stochastic_method<Method>, adaptive_state_on_path<Method, S>, adaptive_state<Method, S>>;
+template <class Method, class S>
+using fixed_state_of = std::conditional_t<stochastic_method<Method>, fixed_state_on_path<S>, fixed_state<S>>;
+template <class Method, class S>
+using stepping_state = std::conditional_t<is_adaptive<Method>, adaptive_state_of<Method, S>, fixed_state_of<Method, S>>;
 
 }  // namespace myriad::detail::inline MYRIAD_TARGET

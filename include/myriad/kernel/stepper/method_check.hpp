@@ -5,6 +5,7 @@
 
 #include <cstddef>
 
+#include "myriad/kernel/methods/adaptive.hpp"
 #include "myriad/kernel/methods/rosenbrock_tableau.hpp"
 #include "myriad/kernel/methods/tableau.hpp"
 #include "myriad/kernel/stepper/dense_output.hpp"
@@ -242,7 +243,7 @@ constexpr bool check_method() requires stochastic_method<Method> {
     constexpr bool complete = requires {
         Method::stages;
         Method::first_same_as_last;
-        requires Method::embedded_order == 0 && !Method::first_same_as_last;
+        requires(Method::embedded_order == 0 || estimates_error<Method>) && !Method::first_same_as_last;
     };
     static_assert(complete,
                   "a method for stochastic equations is a struct with `static constexpr` members stages, "

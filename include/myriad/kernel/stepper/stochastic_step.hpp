@@ -7,8 +7,7 @@
 #include "myriad/kernel/model/jacobian.hpp"
 #include "myriad/kernel/model/lane.hpp"
 #include "myriad/kernel/model/noise.hpp"
-#include "myriad/kernel/model/path_integral.hpp"
-#include "myriad/kernel/model/wiener_path.hpp"
+#include "myriad/kernel/model/path_of_team.hpp"
 #include "myriad/kernel/scalar/dual.hpp"
 #include "myriad/kernel/scalar/select.hpp"
 #include "myriad/kernel/stepper/explicit_rk.hpp"
@@ -26,6 +25,22 @@ struct trial_step<Method, S, n> {
     MYRIAD_FUNCTION vec<S, n>& slope_start() { return slope; }
     MYRIAD_FUNCTION const vec<S, n>& slope_start() const { return slope; }
 };
+
+/// The same with an estimate of its error.
+template <class Method, class S, extent n>
+requires(stochastic_method<Method>&& Method::embedded_order > 0) struct trial_step<Method, S, n> {
+    vec<S, n> slope, y, error;
+    tree_interval<S> noise;
+
+    MYRIAD_FUNCTION vec<S, n>& slope_start() { return slope; }
+    MYRIAD_FUNCTION const vec<S, n>& slope_start() const { return slope; }
+};
+template <class Method, int row, class S>
+requires stochastic_method<Method> MYRIAD_FUNCTION S error_factor(const S&) { return S(real_of<S>(1)); }
+template <class Method, int row, class S, extent n>
+requires stochastic_method<Method> MYRIAD_FUNCTION S error_sum(const trial_step<Method, S, n>& trial, int component) {
+    return trial.error[component];
+}
 
 /// Of a Rosenbrock method what gives it the matrix I / h - J.
 struct whole_step {
@@ -73,6 +88,23 @@ struct noisy_equation {
             }
         }
         return sum;
+    }
+    /// The deviations of g dW if that of each dW is the same.
+    MYRIAD_FUNCTION vec<S, n> spread(const S& t, const vec<S, n>& y, const S& deviation) const {
+        const auto g = Model::template diffusion<S>(t, y, p);
+        vec<S, n> found;
+        MYRIAD_UNROLL_UP_TO(64, 16)
+        for (int c = 0; c < MYRIAD_LENGTH(n); ++c) {
+            if constexpr (has_general_noise<Model>) {
+                S squares = g[c][0] * g[c][0];
+                MYRIAD_UNROLL_UP_TO(64, 16)
+                for (int j = 1; j < MYRIAD_LENGTH(m); ++j) squares = fma(g[c][j], g[c][j], squares);
+                found[c] = deviation * sqrt(squares);
+            } else {
+                found[c] = deviation * abs(g[c]);
+            }
+        }
+        return found;
     }
     /// g, a vector for each process: zero but for its own state if the noise is diagonal.
     MYRIAD_FUNCTION vec<vec<S, n>, m> columns(const S& t, const vec<S, n>& y) const {
@@ -135,13 +167,16 @@ struct noisy_equation {
 template <class Method, class Model, class S>
 MYRIAD_FUNCTION void stochastic_step(const S& t, const S& h, const S& t1, const vec<S, n_state<Model>>& y,
                                      const inputs<Model, S>& p, trial_step<Method, S, n_state<Model>>& trial) {
-    constexpr auto m = n_wiener<Model>;
-    if constexpr (uses_integrals<Method>) {
-        const increments_with_integrals<S, m> of_path = detail::path_integrals<m>(trial.noise);
+    if constexpr (Method::embedded_order > 0) {
+        const auto of_path = detail::integrals_of_model<Model>(trial.noise);
+        const noisy_equation<Model, S, true> equation{p, of_path.increment, of_path.integral};
+        trial.y = Method::step(equation, t, h, t1, y, trial.slope, trial.error);
+    } else if constexpr (uses_integrals<Method>) {
+        const auto of_path = detail::integrals_of_model<Model>(trial.noise);
         const noisy_equation<Model, S, true> equation{p, of_path.increment, of_path.integral};
         trial.y = Method::step(equation, t, h, t1, y, trial.slope);
     } else {
-        const noisy_equation<Model, S> equation{p, detail::path_increments<m>(trial.noise), {}};
+        const noisy_equation<Model, S> equation{p, detail::increments_of_model<Model>(trial.noise), {}};
         trial.y = Method::step(equation, t, h, t1, y, trial.slope);
     }
 }

@@ -3,6 +3,7 @@
 // exact sum. All in integers, so that the result depends neither on the order nor on who computes.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include "myriad/kernel/core/macros.hpp"
@@ -31,6 +32,7 @@ enum class reduction_kind : std::int32_t {
     maximum,     // the largest `ordered` number, 0 for none
     minimum,     // the largest `ordered` number of the negative ones
     sum,         // the digits of an exact sum, and how many numbers are in it
+    moments,     // the same of all inner values, and then of their squares
     statuses,    // how many instances have each status
 };
 
@@ -100,6 +102,16 @@ MYRIAD_FUNCTION std::int64_t place_in_histogram(double value, const double* edge
         (value < edges[middle] ? high : low) = middle;
     }
     return low;
+}
+
+/// A square as two numbers whose sum it is: of numbers that are small enough to be squared, and to be added up.
+struct exact_square {
+    double rounded, rest;
+    bool is_known;
+};
+MYRIAD_FUNCTION exact_square square_of(double value) {
+    const double rounded = value * value;
+    return {rounded, std::fma(value, value, -rounded), value > -0x1p480 && value < 0x1p480};
 }
 
 /// A positive number for every finite one, in the same order, -0 before 0.

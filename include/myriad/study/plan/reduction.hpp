@@ -95,6 +95,13 @@ private:
 [[nodiscard]] ensemble_reduction maximum_of(std::string_view variable);
 /// The mean, for each phase or sample: "x_end_mean"; NaN if there is no value. The sum is exact and rounded once.
 [[nodiscard]] ensemble_reduction mean_of(std::string_view variable);
+/// The variance, for each phase or sample: "x_end_variance", the squares of deviations from the mean over their number
+/// less one; NaN of less than two values, or of larger ones than 1e144. Sums are exact, so that it has the same bits
+/// whatever the order, and nothing cancels.
+[[nodiscard]] ensemble_reduction variance_of(std::string_view variable);
+/// The standard error of the mean, for each phase or sample: "x_end_standard_error", the root of the variance over the
+/// number of values.
+[[nodiscard]] ensemble_reduction standard_error_of(std::string_view variable);
 /// The sum of what a function computes of each chunk of instances: a variable `name` of `size` numbers. The function
 /// adds to `sums`, which are zero at first, and is called by several threads at a time. It sees all instances: those
 /// that failed it leaves out by `chunk.status(i)`, if they are not what it counts. Partial sums are added exactly; what
@@ -112,8 +119,11 @@ struct named_reduction {
     ensemble_reduction (*make)(std::string_view variable);
 };
 /// Those that files and the Python package have from here.
-inline constexpr named_reduction named_reductions[] = {
-    {"minimum_of", &minimum_of}, {"maximum_of", &maximum_of}, {"mean_of", &mean_of}};
+inline constexpr named_reduction named_reductions[] = {{"minimum_of", &minimum_of},
+                                                       {"maximum_of", &maximum_of},
+                                                       {"mean_of", &mean_of},
+                                                       {"variance_of", &variance_of},
+                                                       {"standard_error_of", &standard_error_of}};
 
 }  // namespace studies::inline MYRIAD_ABI
 
