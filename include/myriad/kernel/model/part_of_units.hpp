@@ -341,13 +341,13 @@ struct part_of_units : part_summaries<Whole, (Whole::n_unit + threads - 1) / thr
     template <class S>
     MYRIAD_FUNCTION static vec<S, n_state> diffusion(auto t, const vec<S, n_state>& y, const auto& p) {
         using R = real_of<S>;
-        const team_inputs<R> inputs = inputs_of_team<R>(p);
+        const auto inputs = inputs_of_team<R>(p);
         vec<S, n_state> factors;
         MYRIAD_UNROLL
         for (int part = 0; part < parts; ++part) {
-            const auto of_unit = detail::factors_of_unit<unit_type, S>(
-                unit_of(part), t, y.values + part * states_of_unit,
-                unit_inputs<unit_type, units, R, R, team_inputs<R>>(inputs, unit_of(part)));
+            const auto of_unit =
+                detail::factors_of_unit<unit_type, S>(unit_of(part), t, y.values + part * states_of_unit,
+                                                      unit_inputs_type<R>(inputs, unit_of(part)));
             MYRIAD_UNROLL
             for (int c = 0; c < states_of_unit; ++c) factors[part * states_of_unit + c] = of_unit[c];
         }
