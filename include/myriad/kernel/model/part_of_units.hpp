@@ -345,9 +345,8 @@ struct part_of_units : part_summaries<Whole, (Whole::n_unit + threads - 1) / thr
         vec<S, n_state> factors;
         MYRIAD_UNROLL
         for (int part = 0; part < parts; ++part) {
-            const auto of_unit =
-                detail::factors_of_unit<unit_type, S>(unit_of(part), t, y.values + part * states_of_unit,
-                                                      unit_inputs_type<R>(inputs, unit_of(part)));
+            const auto of_unit = detail::factors_of_unit<unit_type, S>(
+                unit_of(part), t, y.values + part * states_of_unit, unit_inputs_type<R>(inputs, unit_of(part)));
             MYRIAD_UNROLL
             for (int c = 0; c < states_of_unit; ++c) factors[part * states_of_unit + c] = of_unit[c];
         }
