@@ -30,6 +30,16 @@ using part_of_512 =
     myriad::detail::model_of_thread<myriad::coupled_units<teams::place, 512>, myriad::dormand_prince_8, double>;
 static_assert(myriad::detail::shared_step_bytes<myriad::tsitouras_5, teams::places<1>, double> > 0);
 static_assert(myriad::detail::shared_step_bytes<myriad::dormand_prince_8, part_of_512, double> == 0);
+// nvcc finds what a class template declares in arrays.
+template <int>
+struct in_template {
+    enum publication { level, n_publication };
+    enum observed { height, n_observed };
+    enum accessory { highest, n_accessory };
+    static constexpr myriad::coupling couplings[] = {myriad::full_coupling(level)};
+    static constexpr myriad::summary summaries[] = {{height, myriad::over_phase::maximum, highest}};
+};
+static_assert(myriad::detail::n_coupling<in_template<0>> == 1 && myriad::detail::n_summary<in_template<0>> == 1);
 INSTANTIATE(small, cash_karp, constant_bank)
 INSTANTIATE(small_as_a_whole, cash_karp, constant_bank)
 INSTANTIATE(part_of_30, tsitouras_5, constant_bank)

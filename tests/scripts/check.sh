@@ -126,7 +126,7 @@ expect "test.sh succeeds where all tests do" 0 '^succeeded$' last_of_steps --onl
 expect "test.sh says what a step computed" 0 'programs +[0-9]+ +[0-9]+ +[1-9][0-9]+$' run_steps --only programs
 printf 'programs 0\n' >"$work/steps/scripts/budgets.txt"
 expect "a step that computes for longer than its budget is a failure" 1 'programs: FAILED, it computed for [1-9]' \
-    env 'BASH_FUNC_cmake%%=() { awk "BEGIN { for (i = 0; i < 4e7; i++); }"; }' PATH="$work/programs:$PATH" \
+    env 'BASH_FUNC_cmake%%=() { awk "BEGIN { for (i = 0; i < 1.5e8; i++); }"; }' PATH="$work/programs:$PATH" \
     "$work/steps/scripts/test.sh" --only programs
 rm "$work/steps/calls"
 run_steps --only ci,programs >/dev/null

@@ -2,6 +2,7 @@
 // The contents of a model: its numbers of components, hooks and declarations, all read at compile time.
 #pragma once
 
+#include <cstddef>
 #include <string_view>
 #include <type_traits>
 
@@ -10,6 +11,11 @@
 #include "myriad/kernel/model/component_kinds.hpp"
 
 namespace myriad::detail {
+
+/// Number of entries of an array that a model declares, of its entry's type and its bytes: nvcc does not know the
+/// length of an array of a class template, which std::size asks for, before `sizeof` has been asked.
+template <class Entry, std::size_t bytes>
+inline constexpr int length_of_array = static_cast<int>(bytes / sizeof(Entry));
 
 // Counts: the last enumerator of each of the model's enumerations, or zero.
 #define MYRIAD_MODEL_COUNT(count)                     \

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <iterator>
 #include <type_traits>
 
 #include "myriad/kernel/core/macros.hpp"
@@ -59,8 +58,8 @@ namespace myriad::detail {
 
 template <class Unit>
 constexpr int n_coupling_of() {
-    if constexpr (requires { std::size(Unit::couplings); }) {
-        return static_cast<int>(std::size(Unit::couplings));
+    if constexpr (requires { Unit::couplings[0]; }) {
+        return length_of_array<decltype(Unit::couplings[0]), sizeof(Unit::couplings)>;
     } else {
         return 0;
     }

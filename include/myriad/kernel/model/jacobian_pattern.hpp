@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <iterator>
 #include <type_traits>
 
 #include "myriad/kernel/core/macros.hpp"
@@ -47,7 +46,7 @@ constexpr bool declares_jacobian_pattern() {
 template <class Model>
 constexpr int n_declared_entry_of() {
     if constexpr (declares_jacobian_pattern<Model>()) {
-        return static_cast<int>(std::size(Model::jacobian_pattern));
+        return length_of_array<decltype(Model::jacobian_pattern[0]), sizeof(Model::jacobian_pattern)>;
     } else {
         return 0;
     }

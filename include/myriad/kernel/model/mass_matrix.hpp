@@ -3,8 +3,6 @@
 // algebraic.
 #pragma once
 
-#include <iterator>
-
 #include "myriad/kernel/core/macros.hpp"
 #include "myriad/kernel/model/concepts.hpp"
 #include "myriad/kernel/model/jacobian_pattern.hpp"
@@ -26,7 +24,7 @@ namespace myriad::detail {
 template <class Model>
 constexpr int n_mass_entry_of() {
     if constexpr (requires { Model::mass_matrix; }) {
-        return static_cast<int>(std::size(Model::mass_matrix));
+        return length_of_array<decltype(Model::mass_matrix[0]), sizeof(Model::mass_matrix)>;
     } else {
         return 0;
     }

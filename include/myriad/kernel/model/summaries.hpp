@@ -79,8 +79,8 @@ namespace myriad::detail {
 
 template <class Model>
 constexpr int n_summary_of() {
-    if constexpr (requires { std::size(Model::summaries); }) {
-        return static_cast<int>(std::size(Model::summaries));
+    if constexpr (requires { Model::summaries[0]; }) {
+        return length_of_array<decltype(Model::summaries[0]), sizeof(Model::summaries)>;
     } else {
         return 0;
     }
