@@ -114,7 +114,7 @@ measurement measure_units(const char* name, std::int64_t size, const measure_opt
 }
 std::vector<measurement> measure_all_units(std::int64_t size, const measure_options& how) {
     return {measure_units<64, 1>("64 units, one thread", size, how), measure_units<64, 0>("64 units, team", size, how),
-            measure_units<64, 32>("64 units, team of 32", size, how),
+            measure_units<64, 16>("64 units, team of 16", size, how),
             measure_units<100, 1>("100 units, one thread", size, how),
             measure_units<100, 0>("100 units, team", size, how)};
 }

@@ -71,7 +71,7 @@ TEST_CASE("units say how many threads integrate them, and what teams do not have
     CHECK(threads_per_instance<teams::hoppers<4>, myriad::tsitouras_5, double>() == 4);
     CHECK(threads_per_instance<teams::watched_ring<4>, myriad::tsitouras_5, double>() == 4);
     CHECK(threads_per_instance<teams::adapting_cells<4>, myriad::tsitouras_5, double>() == 4);
-    CHECK(threads_per_instance<delayed_units::phases<20>, myriad::tsitouras_5, double>() == 8);
+    CHECK(threads_per_instance<delayed_units::phases<20>, myriad::tsitouras_5, double>() == 16);
     CHECK(threads_per_instance<delayed_units::phases<5>, myriad::tsitouras_5, double>() == 1);
     CHECK(threads_per_instance<delayed_units::phases<20>, myriad::rodas_5p, double>() == 1);
     CHECK(threads_per_instance<delayed_units::changing_units, myriad::tsitouras_5, double>() == 1);
