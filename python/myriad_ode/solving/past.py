@@ -13,6 +13,7 @@ import numpy as np
 
 from ..base.errors import Error, at, users_line
 from ..models.components import short_name
+from ..models.delays import first_of_lag
 from ..models.extended import Extended
 from ..models.methods import fixed_step
 from ..models.recorded import RecordedModel
@@ -109,7 +110,8 @@ def steps_to_keep(model: AnyModel, method: str, given: Mapping[str, Any], domain
     reach = np.minimum(functools.reduce(np.maximum, known), np.where(within > 0, within, 0.0))
     steps = min(float(np.max(np.ceil(reach / options.step), initial=0)), _largest)
     jumps_anew = changed or own.events or own.stops or any(one.is_slope for one in own.delays)
-    return min(max(int(steps) + 2 * _jumps(len(lags)) + 4, _with_jumps if jumps_anew else 0), _largest)
+    different = len({*first_of_lag(own.delays)})
+    return min(max(int(steps) + 2 * _jumps(different) + 4, _with_jumps if jumps_anew else 0), _largest)
 
 
 def refuse_short_tables(model: AnyModel, given: Mapping[str, Any], begin: Any) -> None:

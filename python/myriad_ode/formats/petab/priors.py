@@ -64,8 +64,11 @@ def read_prior_2(parameter: Any) -> tuple[Prior, tuple[float, float]]:
     bounds = float(parameter.lb), float(parameter.ub)
     given = [float(v) for v in parameter.prior_parameters or bounds]
     where = f"the table of parameters, row '{parameter.id}', column priorDistribution"
+    nothing_left = "the prior is zero between the bounds"
     if kind == "uniform":
         least, most = max(given[0], bounds[0]), min(given[1], bounds[1])
+        if least > most:
+            raise Refused(f"{where}: {nothing_left}")
         return UniformPrior(float(np.log(most - least)) if most - least < np.inf else 0.0), (least, most)
     if kind not in _of_version_2:
         raise Refused(f"{where}: {kind}; supported are {', '.join(['uniform', *_of_version_2])}")
@@ -74,7 +77,7 @@ def read_prior_2(parameter: Any) -> tuple[Prior, tuple[float, float]]:
         whole = parameter.model_copy(update={"lb": -np.inf, "ub": np.inf}).prior_dist
         within = float(whole.cdf(bounds[1]) - whole.cdf(bounds[0]))
     if not within > 0:
-        raise Refused(f"{where}: the prior is zero between the bounds")
+        raise Refused(f"{where}: {nothing_left}")
     support = given if kind == "log-uniform" else (float(whole.ppf(0)), float(whole.ppf(1)))
     least, most = (end if np.isfinite(end) else float(whole.ppf(abs(side - _beyond)))
                    for side, end in enumerate(bounds))
