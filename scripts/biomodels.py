@@ -23,7 +23,7 @@ import libsbml
 import numpy as np
 
 import myriad_ode as my
-from myriad_ode.base.errors import listed
+from myriad_ode.base.errors import quoted
 from myriad_ode.models.any_model import names_of
 from myriad_ode.symbolic.symbols import symbol
 
@@ -69,7 +69,7 @@ def myriads(file, options, names):
                           atol=options.atol, maximum_step=options.end / (options.samples - 1),
                           time_limit=options.time_limit, start=dict.fromkeys(unset, 0.0))
     return ({name: values for name in names if (values := values_of(run, model, name, names)) is not None},
-            f"with 0 for {listed(unset)}, which the file has no value of" if unset else "")
+            f"with 0 for {quoted(unset)}, which the file has no value of" if unset else "")
 
 
 def without_value(file, model):

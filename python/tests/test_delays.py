@@ -258,6 +258,8 @@ def test_fixed_steps_keep_what_their_longest_lag_needs():
     assert 500 < kept(30.0, (0, 5)) < 550 and 1500 < kept(30.0, (0, 5), phases=3) < 1550
     assert kept(np.nan) == kept([-1.0, np.inf]) == kept(0.5) < 100
     assert kept(1e7, (0, 1e7)) == 1048576
+    many = my.model({x: -sum(my.delayed(x, 0.01 * (i + 1)) for i in range(100))})
+    assert 2 * 5151 < kept(1.0, of=many) < 2 * 5151 + 200  # jumps up to the second derivative, as the kernel follows
     assert kept(1.0, history_steps=64) is kept(1.0, method="tsitouras_5") is None  # as it is told, or unknown
     assert kept(1.0, of=my.model({x: my.delayed(x, tau * t)})) is None
     assert kept(0.1, of=my.model({x: my.delayed(x, tau)}, stops=my.stop(1, do={x: 2}))) == 1024  # as actions jump

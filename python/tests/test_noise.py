@@ -452,7 +452,7 @@ def test_what_adaptive_steps_along_paths_do_not_take_is_refused(more, said, noth
 
 
 def test_events_with_adaptive_steps_along_paths_are_refused(nothing_compiles):
-    with pytest.raises(my.Error, match="the model's events are found in fixed steps alone yet: give step="):
+    with pytest.raises(my.Error, match="the model's events are so far found only with fixed steps: give step="):
         call(my.model({x: -x}, noise={x: 1}, events=my.event(x - 3)), method="sra1", step=None, rtol=1e-2)
 
 

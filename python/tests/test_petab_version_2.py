@@ -181,6 +181,12 @@ def prior_slope(prior, k):
     return (r * inner).item()
 
 
+@pytest.mark.parametrize("prior", ["uniform\t11;12", "gamma\t3;1e-9"])
+def test_a_prior_that_the_bounds_cut_off_whole_is_refused(tmp_path, prior):
+    with pytest.raises(my.Error, match="row 'k', column priorDistribution: the prior is zero between the bounds"):
+        my.read_petab(write(tmp_path, parameters=with_priors(prior, "\t", "\t", "\t")))
+
+
 def test_a_prior_without_bounds_has_quantiles_for_a_fit_to_begin_between(tmp_path):
     stats = pytest.importorskip("scipy.stats")
     parameters = with_priors("log-normal\t0;0.2", "normal\t2;1", "\t", "\t").replace("0.01\t10", "0\tinf").replace(

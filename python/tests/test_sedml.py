@@ -195,8 +195,8 @@ def test_a_repeated_task_sets_initial_values_and_several_things_at_once(folder):
     (repeated(EVEN.replace('"3"', '"1e300"'), set_to(K)), "a range of 1e+300 steps"),
     (repeated(EVEN.replace('"0.4"', '"often"'), set_to(K)), 'end of \'r\' is "often": give a number'),
     (repeated('<functionalRange id="r" range="q"/>', set_to(K)), "has a <functionalRange>: only uniform and vector"),
-    (repeated(EVEN, set_to(K), tasks='<subTask task="q"/>'), "has 1 tasks, 'q': only one <task> is repeated"),
-    (repeated(EVEN, set_to(K), tasks='<subTask task="many"/>'), "only one <task> is repeated"),
+    (repeated(EVEN, set_to(K), tasks='<subTask task="q"/>'), "repeats 'q': only one <task> can be repeated"),
+    (repeated(EVEN, set_to(K), tasks='<subTask task="many"/>'), "repeats 'many': only one <task> can be repeated"),
     (repeated(EVEN.replace("linear", "log").replace("0.1", "-1"), set_to(K)), "a logarithmic range from -1 to 0.4"),
 ])
 def test_repetitions_that_are_no_sweep_are_refused(folder, task_of, message):

@@ -32,8 +32,8 @@ class UnknownName(Error, KeyError):
     __str__ = Exception.__str__  # which, unlike a KeyError's, shows the message as it is
 
 
-def listed(names: Iterable[str], most: int = 8) -> str:
-    """Names in a message: the first ones, and how many more there are."""
+def quoted(names: Iterable[str], most: int = 8) -> str:
+    """Names for a message, in quotes: the first ones, and how many more there are."""
     all_names = [repr(name) for name in names]
     more = f" and {len(all_names) - most} more" if len(all_names) > most else ""
     return ", ".join(all_names[:most]) + more

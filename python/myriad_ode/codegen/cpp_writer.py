@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from .._core import factor_entries
+from ..models.delays import first_of_lag
 from ..models.mass_matrix import left_sides, mass_entries
 from ..models.noise import equation_texts
 from ..symbolic.node import integer, real, walk
@@ -200,10 +201,9 @@ class Writer:
             blocks.append(["/// Whether it is the slope that the state had.",
                            f"MYRIAD_FUNCTION static bool is_delayed_slope(int{'' if every else ' ' + n.number}) {{",
                            *wrap(f"return {those};", 4), "}"])
-        first: dict[tuple[int, bool], str] = {}
-        of_lag = {one.name: first.setdefault((id(one.lag), one.is_slope), one.name) for one in delays}
-        if len(first) < len(delays):
-            blocks.append(self.same_lag(of_lag))
+        first = first_of_lag(delays)
+        if len({*first}) < len(delays):
+            blocks.append(self.same_lag({one.name: delays[j].name for one, j in zip(delays, first)}))
         is_constant = all(one.is_constant for one in delays)
         blocks.append(self.of_past("/// How long ago it was.", "lag", [(one.name, one.lag) for one in delays],
                                    "p" if is_constant else "typ"))

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import collections
+import functools
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING
 
@@ -169,6 +170,10 @@ class Writer:
         self.functions.append([])
         for write in several:
             write()
+
+    def series_of_values(self, roots: Iterable[Node | None]) -> None:
+        """Such functions, each with one result, or empty ones."""
+        self.series(functools.partial(self.value, root) for root in roots)
 
     def value(self, root: Node | None) -> None:
         """A function with one result, or an empty one."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..base import component_kinds as kinds
-from ..base.errors import Error, listed
+from ..base.errors import Error, quoted
 from ..models.any_model import AnyModel
 from ..models.components import Components, name_of, unknown
 from ..sweeps.inputs import by_name, whole
@@ -69,7 +69,7 @@ class Starts:
         self.values = {name: values[name] for name in components.place if name in values}
         missing = [name for name in components.states if name not in values and name not in components.defaults]
         if missing:
-            raise Error(f"the initial value of {listed(missing)} is missing: give it in start=")
+            raise Error(f"the initial value of {quoted(missing)} is missing: give it in start=")
         if not sweep.size:
             raise Error("start= has no initial states: give at least one")
 

@@ -80,7 +80,7 @@ class CauchyPrior(Prior):
 
 @dataclass(frozen=True)
 class PowerPrior(Prior):
-    """A density that is x^power exp(-rate x^exponent - constant) for positive x, and zero elsewhere."""
+    """The density x^power exp(-rate x^exponent - constant) of positive x, and zero elsewhere."""
 
     power: float
     rate: float
@@ -98,15 +98,23 @@ class PowerPrior(Prior):
 
 
 @dataclass(frozen=True)
-class ScaledPrior(Prior):
-    """Another density by a factor exp(-constant), as of the part of it between bounds; or that factor alone."""
+class UniformPrior(Prior):
+    """A density that is exp(-constant) everywhere: that of values between bounds, which a fit keeps."""
 
-    prior: Prior | None
     constant: float
 
     def terms(self, value: Array) -> tuple[Array, Array, Array]:
-        if self.prior is None:
-            return np.full_like(value, self.constant), np.zeros_like(value), np.zeros_like(value)
+        return np.full_like(value, self.constant), np.zeros_like(value), np.zeros_like(value)
+
+
+@dataclass(frozen=True)
+class ScaledPrior(Prior):
+    """Another density times a factor exp(-constant), as where bounds cut off a part of it."""
+
+    prior: Prior
+    constant: float
+
+    def terms(self, value: Array) -> tuple[Array, Array, Array]:
         loss, r, inner = self.prior.terms(value)
         return loss + self.constant, r, inner
 
@@ -163,8 +171,8 @@ def laplace(location: float, scale: float) -> Prior:
 
 
 def log_laplace(median: float, scale: float) -> Prior:
-    """A distribution whose logarithm has Laplace's distribution, about that of `median`, with `scale`. The density is
-    that of the component itself."""
+    """The distribution of a component whose logarithm has Laplace's, about the logarithm of `median`, with `scale`. The
+    density is that of the component itself."""
     location = float(np.log(_positive(median, "median")))
     return LaplacePrior("log", location, _positive(scale, "scale"), True)
 
@@ -175,13 +183,13 @@ def cauchy(location: float, scale: float) -> Prior:
 
 
 def gamma(shape: float, scale: float) -> Prior:
-    """A gamma distribution, of the mean shape scale."""
+    """A gamma distribution, with the mean shape * scale."""
     shape, scale = _positive(shape, "shape"), _positive(scale, "scale")
     return PowerPrior(shape - 1, 1 / scale, 1.0, lgamma(shape) + shape * float(np.log(scale)))
 
 
 def exponential(scale: float) -> Prior:
-    """An exponential distribution, of the mean `scale`."""
+    """An exponential distribution, with the mean `scale`."""
     return gamma(1.0, scale)
 
 
@@ -191,13 +199,14 @@ def chi_squared(degrees_of_freedom: float) -> Prior:
 
 
 def rayleigh(scale: float) -> Prior:
-    """Rayleigh's distribution, of the mode `scale`."""
+    """Rayleigh's distribution, with the mode `scale`."""
     scale = _positive(scale, "scale")
     return PowerPrior(1.0, 0.5 / scale**2, 2.0, 2 * float(np.log(scale)))
 
 
 def log_uniform(least: float, most: float) -> Prior:
-    """A distribution whose logarithm is uniform between those of `least` and `most`; beyond, the density is zero."""
+    """The distribution of a component whose logarithm is uniform between those of `least` and `most`; the density is
+    zero outside."""
     least, most = _positive(least, "least"), _positive(most, "most")
     if not least < most:
         raise Error(f"a log-uniform prior from {least:g} to {most:g}: give the smaller number first")

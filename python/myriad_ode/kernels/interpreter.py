@@ -13,6 +13,7 @@ from ..base import component_kinds as kinds
 from ..base.errors import Error
 from ..codegen.jacobian import first_sparse, is_autonomous, jacobian_of, pattern_of
 from ..codegen.tape_writer import Writer, _refuse, lengths_of, methods
+from ..models.delays import first_of_lag
 from ..models.methods import stiff
 from ..models.recorded import RecordedModel
 from ..models.sensitivities import WithSensitivities
@@ -80,38 +81,30 @@ def _write_actions(writer: Writer, model: RecordedModel) -> None:
     def do(one: Event | Stop | Trigger) -> Callable[[], None]:
         return lambda: writer.hook(one.do, repr(one.name))
 
-    def value(root: Node | None) -> Callable[[], None]:
-        return lambda: writer.value(root)
-
     def edge(one: Edge) -> Callable[[], None]:
         return lambda: writer.triggered(one, model)
 
     writer.series(map(do, model.events))
-    writer.series([value(_time_of(one)) for one in stops])
+    writer.series_of_values(map(_time_of, stops))
     writer.series(map(do, stops))
-    writer.series([value(one.condition) for one in edges])
+    writer.series_of_values(one.condition for one in edges)
     writer.series(map(edge, edges))
     writer.series(map(do, triggers))
-    writer.series([value(one.priority) for one in triggers])
+    writer.series_of_values(one.priority for one in triggers)
 
 
 def _write_past(writer: Writer, model: RecordedModel) -> None:
     """The functions of delayed values: how long ago each is, and what it was before the begin."""
-
-    def value(root: Node | None) -> Callable[[], None]:
-        return lambda: writer.value(root)
-
-    writer.series([value(one.lag) for one in model.delays])
-    writer.series([value(model.history.get(one.symbol.value[1].state)) for one in model.delays])
+    writer.series_of_values(one.lag for one in model.delays)
+    writer.series_of_values(model.history.get(one.symbol.value[1].state) for one in model.delays)
 
 
 def _delays(model: RecordedModel) -> list[list[int]]:
     """Of each delayed value: the number of its state, the first delayed value that is as long ago, and whether it is
     the slope of the state."""
-    states = list(model.states)
-    first: dict[tuple[int, bool], int] = {}
-    return [[states.index(one.state), first.setdefault((id(one.lag), one.is_slope), j), int(one.is_slope)]
-            for j, one in enumerate(model.delays)]
+    number = {name: i for i, name in enumerate(model.states)}
+    return [[number[one.state], first, int(one.is_slope)]
+            for one, first in zip(model.delays, first_of_lag(model.delays))]
 
 
 def _time_of(one: Stop) -> Node:

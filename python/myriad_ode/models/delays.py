@@ -38,6 +38,12 @@ def delays_of(symbols: Sequence[Any]) -> list[Delay]:
             for state in states for symbol, past in pasts if past.state is state]
 
 
+def first_of_lag(delays: Sequence[Delay]) -> list[int]:
+    """Of each delayed value the number of the first one that is as long ago; slopes have lags of their own."""
+    first: dict[tuple[int, bool], int] = {}
+    return [first.setdefault((id(one.lag), one.is_slope), j) for j, one in enumerate(delays)]
+
+
 def read_history(reader: Reader, given: ByComponent | None, states: Sequence[Any]) -> dict[Any, Any]:
     """What states were before the begin, as {state: expression of time, parameters and shared values}."""
     found: dict[Any, Any] = {}

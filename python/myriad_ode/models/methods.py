@@ -54,7 +54,13 @@ def stages_of(written: str) -> int:
     return next((_facts[word].stages for word in re.findall(r"\w+", written) if word in _facts), 7)
 
 
-halving = "halving"  #: what stands for `adaptive` among choices of control
+halving = "halving"  #: stands for `adaptive` of methods for noise; the package chooses it, not the user
+
+
+def choices_of(control: Any) -> tuple[Any, ...]:
+    """The choices of a control that is given as one or several."""
+    return tuple(control) if isinstance(control, (list, tuple, set)) else (control,)
+
 
 default = "tsitouras_5"  # docs/methods.md#the-default
 
@@ -75,7 +81,7 @@ def method_type(name: str, chosen: str | Sequence[str] = (), samples: bool = Fal
         near = _elsewhere.get(lower) or next(iter(difflib.get_close_matches(lower, methods, 1)), None)
         hint = f"use \"{near}\", or another" if near else "choose one"
         raise Error(f"there is no method {name!r}: {hint} of {', '.join(methods)}")
-    choices: tuple[Any, ...] = tuple(chosen) if isinstance(chosen, (list, tuple, set)) else (chosen,)
+    choices = choices_of(chosen)
     if choices == (halving,) and name in adaptive_on_paths:
         written = f"myriad::adaptive<myriad::{name}>"
         return f"myriad::dense<{written}>" if samples else written

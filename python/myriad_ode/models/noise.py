@@ -13,8 +13,8 @@ from ..symbolic.expression import constant
 from ..symbolic.node import Node, text
 from ..symbolic.numbers import is_whole
 from .delays import refuse_method
-from .methods import (adaptive_on_paths, additive_noise, default, diagonal_noise, fixed_step, halving, methods,
-                      pathless, stiff, stochastic)
+from .methods import (adaptive_on_paths, additive_noise, choices_of, default, diagonal_noise, fixed_step, halving,
+                      methods, pathless, stiff, stochastic)
 
 if TYPE_CHECKING:
     from ..symbolic.expression import Expression
@@ -219,21 +219,23 @@ def method_for(model: AnyModel, method: str | None, precision: str) -> str:
 
 
 def control_for(model: AnyModel, method: str, control: str | Sequence[str], options: Any) -> Any:
-    """The control of a call: by halving where a method for noise has tolerances and no step. Refuses a method for fixed
-    steps without one."""
-    if halving in ((control,) if isinstance(control, str) else control):
+    """The control of a call: that by halving and doubling where a method for noise has tolerances and no step. Refuses
+    a method for fixed steps that has no step."""
+    if halving in choices_of(control):
         raise Error(f"there is no step-size control {halving!r}: leave out step=, and give rtol= and atol=")
     if method not in fixed_step or options.step is not None:
         return control
     if method not in adaptive_on_paths:
         raise Error(f"{method} takes fixed steps: give step=")
-    if all(isinstance(one, float) and one == 1e-8 for one in (options.rtol, options.atol)):
+    defaults = type(options)
+    if all(isinstance(given, float) and given == default for given, default in (
+            (options.rtol, defaults.rtol), (options.atol, defaults.atol))):
         raise Error(f"{method} takes fixed steps or adaptive ones: give step=, or rtol= and atol=")
     if control:
         raise Error("adaptive steps along a path are halved and doubled, and have no other control: leave out control=")
     if model.has_noise is not None and (model.events or model.summaries):
-        raise Error(f"the model's {'events' if model.events else 'extrema'} are found in fixed steps alone yet: give "
-                    "step= instead of tolerances")
+        raise Error(f"the model's {'events' if model.events else 'extrema'} are so far found only with fixed steps: "
+                    "give step= instead of tolerances")
     return (halving,)
 
 

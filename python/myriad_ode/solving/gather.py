@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import numpy as np
 
 from ..base import component_kinds as kinds
-from ..base.errors import Error, listed
+from ..base.errors import Error, quoted
 from ..models.any_model import AnyModel
 from ..models.components import Components, by_component, short_name
 from ..models.sensitivities import ends_of_domain
@@ -88,7 +88,7 @@ def refuse_missing(components: Components, given: Container[str]) -> None:
         missing = [n for n in names if n not in given]
         if missing:
             hint = ", as generate= sets instances of studies alone" if set(missing) & set(components.generated) else ""
-            raise Error(f"the {what} of {listed(missing)} is missing: give it in {where}{hint}")
+            raise Error(f"the {what} of {quoted(missing)} is missing: give it in {where}{hint}")
 
 
 def _refuse_lengths(lengths: Mapping[str, int]) -> None:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""What follows, before any step, from the constant lags of a model with delays: how many fixed steps of the past are to
-be kept, and whether the tables of its histories begin early enough."""
+"""What is known before any step of a model with delays whose lags are constant: how many fixed steps of the past an
+instance needs, and whether the tables of its histories begin early enough."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ import numpy as np
 
 from ..base.errors import Error, at, users_line
 from ..models.components import short_name
+from ..models.delays import first_of_lag
 from ..models.extended import Extended
 from ..models.methods import fixed_step
 from ..models.recorded import RecordedModel
@@ -26,9 +27,11 @@ if TYPE_CHECKING:
     from ..models.any_model import AnyModel
     from .options import Options
 
-_order, _most_jumps, _largest = 4, 1024, 1048576  # of runge_kutta_4; breaking_points.hpp; of history_steps
-_most_combined = 10_000_000  # instances of a study, of which as many values are combined
-_with_jumps = 1024  # steps that are kept at least where actions jump, or slopes of the past, as often as they like
+_order = 4  # the highest of methods for fixed steps, that of runge_kutta_4
+_most_jumps, _most_to_second = 1024, 16 * 1024  # as in kernel/event/breaking_points.hpp
+_largest = 1048576  # of history_steps
+_most_combined = 10_000_000  # instances of a study for which the values of several axes are combined
+_with_jumps = 1024  # the fewest steps kept where actions, or slopes of the past, make any number of jumps
 
 
 def values_of_axes(axes: Sequence[Mapping[str, Any]], constants: Mapping[str, Any]) -> dict[str, Any]:
@@ -67,20 +70,31 @@ def _value(expression: Any, given: Mapping[str, Any], time: Any = None) -> Any:
 
 
 def _jumps(lags: int) -> int:
-    """The jumps of the past that may be followed within the longest of so many lags, for one at the begin."""
+    """The jumps of the past that are followed for one at the begin, with so many lags: those up to the order that
+    highest_jump of kernel/event/breaking_points.hpp gives."""
     jumps = 1
     for k in range(1, _order + 1):
-        jumps = jumps * (lags + k) // k
-        if jumps > _most_jumps and k > 2:
+        up_to_next = jumps * (lags + k) // k
+        if k > 1 and up_to_next > (_most_jumps if k > 2 else _most_to_second):
             break
+        jumps = up_to_next
     return jumps
+
+
+def prepare_past(model: AnyModel, method: str, given: Mapping[str, Any], domain: tuple[Any, Any], options: Options,
+                 core_options: Any) -> None:
+    """Refuses tables of histories that are too short, and sets how many fixed steps of the past are kept, if that is
+    known. `given` has what is known of the instances, by the names of components."""
+    refuse_short_tables(model, given, domain[0])
+    if (kept := steps_to_keep(model, method, given, domain, options)) is not None:
+        core_options.history_steps = kept
 
 
 def steps_to_keep(model: AnyModel, method: str, given: Mapping[str, Any], domain: tuple[Any, Any],
                   options: Options) -> int | None:
-    """The steps of the past that an instance reads at most, of fixed steps and constant lags: those of its longest lag,
-    or of the time from the begin on, with the steps without length and those that are shorter at jumps. None where that
-    is not known."""
+    """The most steps of the past that an instance reads, with fixed steps and constant lags: those over its longest
+    lag, or over the whole time if that is shorter, and at each jump one without length and one that it cuts short. None
+    where that is not known."""
     own = _recorded(model)
     if own is None or method not in fixed_step or options.history_steps != 0 or not options.step:
         return None
@@ -96,7 +110,8 @@ def steps_to_keep(model: AnyModel, method: str, given: Mapping[str, Any], domain
     reach = np.minimum(functools.reduce(np.maximum, known), np.where(within > 0, within, 0.0))
     steps = min(float(np.max(np.ceil(reach / options.step), initial=0)), _largest)
     jumps_anew = changed or own.events or own.stops or any(one.is_slope for one in own.delays)
-    return min(max(int(steps) + 2 * _jumps(len(lags)) + 4, _with_jumps if jumps_anew else 0), _largest)
+    different = len({*first_of_lag(own.delays)})
+    return min(max(int(steps) + 2 * _jumps(different) + 4, _with_jumps if jumps_anew else 0), _largest)
 
 
 def refuse_short_tables(model: AnyModel, given: Mapping[str, Any], begin: Any) -> None:

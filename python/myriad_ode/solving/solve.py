@@ -37,7 +37,7 @@ from ..sweeps.sweep import Sweep, with_paths
 from .core_options import finish_options, longest_step, make_options, options_of, takes_options
 from .gather import fill, gather, given_values, refuse_backwards
 from .options import Options, SolveArguments
-from .past import refuse_short_tables, steps_to_keep
+from .past import prepare_past
 from .progress import ProgressDisplay
 from .sensitivity_options import start_derivatives, with_derivatives
 
@@ -93,9 +93,7 @@ class Call:
         refuse_options_of_paths(self.method, options.seed, options.noise_step)
         refuse_history_steps(self.model, options.history_steps)
         self.core_options, self.recorded, self.sampled = make_options(self.components, self.count, options)
-        refuse_short_tables(self.model, self.given, self.domain[0])
-        if (kept := steps_to_keep(self.model, self.method, self.given, self.domain, options)) is not None:
-            self.core_options.history_steps = kept
+        prepare_past(self.model, self.method, self.given, self.domain, options, self.core_options)
 
     def prepare(self, devices: Sequence[str], interpreted: bool | None) -> None:
         """Gets the kernels."""

@@ -36,7 +36,7 @@ from ..results.report import Interrupted
 from ..solving.core_options import finish_options, longest_step, make_options, options_of, takes_options
 from ..solving.gather import ends_of, full_name, gather_axes, refuse_backwards, refuse_missing, refuse_shared
 from ..solving.options import Options, StudyArguments
-from ..solving.past import refuse_short_tables, steps_to_keep, values_of_axes
+from ..solving.past import prepare_past, values_of_axes
 from ..solving.progress import ProgressDisplay
 from ..sweeps.inputs import by_name, only, path_text, real, text, whole
 from ..sweeps.sweep import Sweep
@@ -96,10 +96,7 @@ class Study:
         refuse_options_of_paths(chosen, options.seed, options.noise_step)
         refuse_history_steps(model, options.history_steps)
         samples = options.samples
-        times: Any = samples.get("times", ()) if isinstance(samples, Mapping) else samples
-        if np.ndim(times) > 1:
-            raise Error("a study has no sample times for each instance: give the same times for all, or a number of "
-                        "evenly spaced ones")
+        _refuse_own_samples(samples)
         core_options, recorded, sampled = make_options(components, 0, options)
         finish_options(core_options, options, components, len(components.states), len(components.events))
         core_options.invalid_instances = "mark"
@@ -116,10 +113,7 @@ class Study:
                 method_type(chosen, control, samples is not None).replace("myriad::", ""))
             refuse_backwards(model, *_known_ends(time))
             values = self._set_instances(made, components, sweep, start, time, draws is not None or paths is not None)
-            domain = values.get("t_begin"), values.get("t_end")
-            refuse_short_tables(model, values, domain[0])
-            if (kept := steps_to_keep(model, chosen, values, domain, options)) is not None:
-                core_options.history_steps = kept
+            prepare_past(model, chosen, values, (values.get("t_begin"), values.get("t_end")), options, core_options)
             made.options(core_options)
             self._looks_at_domains = bool(samples is not None or options.phase_length or options.carry_on)
             if draws is not None:
@@ -360,6 +354,14 @@ def _known_ends(time: tuple[Any, Any] | None) -> tuple[Any, Any]:
     """Begin and end of time, where both are numbers; else NaN."""
     given = (None, None) if time is None else ends_of(time)
     return given if all(isinstance(one, (int, float)) for one in given) else (np.nan, np.nan)
+
+
+def _refuse_own_samples(samples: Any) -> None:
+    """Refuses sample times of each instance."""
+    times: Any = samples.get("times", ()) if isinstance(samples, Mapping) else samples
+    if np.ndim(times) > 1:
+        raise Error("a study has no sample times for each instance: give the same times for all, or a number of "
+                    "evenly spaced ones")
 
 
 def _computed_by(model: AnyModel, given: Any) -> tuple[AnyModel, Any]:

@@ -29,9 +29,10 @@ def _times(partial: Expression | Condition | int, derivative: Expression) -> Exp
 
 def _forwards(node: Node, argument: Node, partial: Expression | Condition | int, derivative: Expression,
               singular: set[int], large: set[int]) -> Expression:
-    """The product of a partial derivative and that of its argument. Zero where that is, though the partial one may be
-    infinite there; for exponentials, where they are, as exp(n log(x)) at x = 0; for quotients by what `singular` has,
-    where they are, as 1 / (1 + exp(x)) for large x; and for functions of what `large` has that become flat, far out."""
+    """The product of a partial derivative and that of its argument; but zero, its limit, where it would be zero times
+    infinity: where the argument does not vary; where an exponential is zero, as exp(n log(x)) at x = 0; where a
+    quotient by one of the `singular` nodes is, as 1 / (1 + exp(x)) for large x; and where the argument of a function
+    that becomes flat, one of the `large` nodes, overflows."""
     if derivative.op == "constant" and derivative.value == 0:
         return derivative
     if isinstance(partial, ex.Expression) and derivative.op != "constant":
@@ -50,13 +51,15 @@ _largest = float(np.finfo(float).max)
 
 
 def _becomes_flat(node: Node, argument: Node, large: set[int]) -> bool:
+    """Whether a node is a function of an argument that may overflow, and its slope may be zero there."""
     return node.op in _flat and argument is node.args[0] and id(argument) in large and not (
         len(node.args) == 2 and node.args[1].op == "constant" and float(node.args[1].value) >= 0)
 
 
 def _far_out(node: Node, argument: Any, derivative: Expression) -> Condition:
     """Whether the argument of such a function has overflowed, or its derivative has and the argument nearly so; of a
-    power only where it is next to zero. The same as in kernel/scalar/partial.hpp."""
+    power only where the power is next to zero. As `flat_far_out` of kernel/scalar/partial.hpp, and `by_base` of
+    kernel/scalar/dual.hpp."""
     size = abs(argument)
     far = (size > _largest) | ((size > _largest * 2.0**-32) & (abs(derivative) > _largest))
     return far & (abs(node.args[1] * node) < 2.0**64 / _largest) if len(node.args) == 2 else far
@@ -66,7 +69,7 @@ _overflow = ("exp", "exp2", "expm1", "sinh", "cosh")  # of arguments of usual si
 
 
 def _with_singular(order: Sequence[Node]) -> tuple[set[int], set[int]]:
-    """Nodes whose derivatives may be infinite, and those of them whose values may be so where they are."""
+    """Nodes whose derivatives may be infinite; and, of these, those whose values may overflow with them."""
     found: set[int] = set()
     large: set[int] = set()
     for node in order:

@@ -7,7 +7,7 @@ import ast
 import functools
 import operator
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, NoReturn
 
 from ..base.errors import Error, at, users_line
@@ -168,7 +168,7 @@ class _SympyReader:
         import sympy
 
         self.sympy, self.whole, self.names, self.what = sympy, whole, names, what
-        self.relations = {
+        self.relations: dict[type, Callable[[Any, Any], Any]] = {
             sympy.StrictLessThan: operator.lt, sympy.LessThan: operator.le, sympy.StrictGreaterThan: operator.gt,
             sympy.GreaterThan: operator.ge, sympy.Equality: operator.eq, sympy.Unequality: operator.ne}
         self.read = functools.cache(self._read)

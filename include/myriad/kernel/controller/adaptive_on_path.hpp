@@ -26,8 +26,9 @@ struct adaptive_stepping_on_path {
     static_assert(!chooses_first_step<Method>,
                   "steps of stochastic equations begin with options::step or a cell of the path: leave out "
                   "automatic_first_step");
-    /// The ratio of error to tolerance below which a step is doubled, if the error decreases like h^(3/2) and a step is
-    /// to be nine tenths of the longest; and above which a rejected one is halved so many times.
+    /// The ratio of error to tolerance up to which a step is doubled, if the error grows like h^(3/2) and steps are to
+    /// be nine tenths of the longest that the tolerance allows; the ratio up to which one halving is enough for a
+    /// rejected step; and what each further halving divides it by.
     static constexpr double most_doubled = 0.30187, most_halved = 2.41495, factor_of_half = 2.82843;
     static constexpr int most_halvings = 4;
 

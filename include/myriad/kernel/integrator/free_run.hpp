@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Runs of fixed steps without events, hooks, error estimates or observers but that of the past.
+// Runs of fixed steps without events, hooks and error estimates, and with no observer but the writer of the past.
 #pragma once
 
 #include "myriad/kernel/integrator/phase_watchdog.hpp"
@@ -91,8 +91,8 @@ struct free_run {
         return ending;
     }
 
-    /// The same for a model with delays, whose past is written at every step: a step with a value that is not finite,
-    /// or that looks up what is not there, is left to the ordinary one that follows.
+    /// The same for a model with delays, whose past is written at every step. Before a step that has a value that is
+    /// not finite, or looks up what is not there, the run ends, and the ordinary step that follows deals with it.
     template <class Source>
     [[nodiscard]] MYRIAD_FUNCTION status take_steps_with_past(Source& source) {
         const iteration_number run = steps_ahead();

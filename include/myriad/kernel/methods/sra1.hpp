@@ -9,9 +9,9 @@
 
 namespace myriad {
 
-/// A Runge-Kutta method for additive noise, for which Ito and Stratonovich equations are the same: fixed steps, strong
-/// order 3/2, weak order 2, or with `adaptive<sra1>` adaptive ones. Source: Roessler, SIAM J. Numer. Anal. 48 (2010)
-/// 922-952; the error estimate: after Rackauckas and Nie, Discrete Contin. Dyn. Syst. B 22 (2017) 2731-2761.
+/// A Runge-Kutta method for additive noise, for which Ito and Stratonovich equations are the same: strong order 3/2 and
+/// weak order 2, with fixed steps, or with `adaptive<sra1>` adaptive ones. Source: Roessler, SIAM J. Numer. Anal. 48
+/// (2010) 922-952; the error estimate: after Rackauckas and Nie, Discrete Contin. Dyn. Syst. B 22 (2017) 2731-2761.
 struct sra1 {
     static constexpr int stages = 2;
     static constexpr int embedded_order = 0;
@@ -23,8 +23,8 @@ struct sra1 {
     static constexpr bool estimates_error = true;                ///< for `adaptive`
 
     /// The state at t1, which is t + h up to rounding; `slope` is the drift at (t, y). If asked for the `error`, it is
-    /// estimated in the mean over what the path may do, with another evaluation of the drift: an estimate along the
-    /// path would have longer steps where the path moves little, and errors of the steps would not average out.
+    /// estimated in the mean over what the path may do, for one more evaluation of the drift: an estimate along the
+    /// path would allow longer steps where the path moves little, and errors of the steps would not average out.
     template <class Equation, class S, detail::extent n, class... Error>
     MYRIAD_FUNCTION static vec<S, n> step(const Equation& equation, const S& t, const S& h, const S& t1,
                                           const vec<S, n>& y, const vec<S, n>& slope, Error&... error) {

@@ -24,8 +24,8 @@ struct sriw1 {
     static constexpr bool estimates_error = true;                ///< for `adaptive`
 
     /// The state at t1, which is t + h up to rounding; `slope` is the drift at (t, y). If asked for the `error`, it is
-    /// estimated in the mean over what the path may do, with another evaluation of the drift: an estimate along the
-    /// path would have longer steps where the path moves little, and errors of the steps would not average out.
+    /// estimated in the mean over what the path may do, for one more evaluation of the drift: an estimate along the
+    /// path would allow longer steps where the path moves little, and errors of the steps would not average out.
     template <class Equation, class S, detail::extent n, class... Error>
     MYRIAD_FUNCTION static vec<S, n> step(const Equation& equation, const S& t, const S& h, const S& t1,
                                           const vec<S, n>& y, const vec<S, n>& slope, Error&... error) {

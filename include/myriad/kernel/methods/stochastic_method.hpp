@@ -13,8 +13,8 @@ namespace myriad::detail {
 ///                                  the state at t1, which is t + h up to rounding; `slope` is the drift at (t, y)
 ///
 ///     estimates_error              if `step` takes a last argument, into which it writes an estimate of its error: the
-///                                  difference from a solution of strong order 1, which decreases like h^(3/2), by one
-///                                  evaluation of the drift more, and not of the increments
+///                                  difference from a solution of strong order 1, which decreases like h^(3/2), in the
+///                                  mean over what the path may do, for one more evaluation of the drift
 ///     uses_integrals               if it takes integrals of the path over a step, beside its increments
 ///     uses_jacobian                if it solves linear systems with the Jacobian of the drift
 ///

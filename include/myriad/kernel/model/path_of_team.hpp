@@ -10,7 +10,8 @@
 namespace myriad::detail::inline MYRIAD_TARGET {
 
 /// Calls `put(c, group, k)` for the process of each of a thread's states: number k of a group, which `draw(number)`
-/// gives. Units whose states fill groups share none.
+/// gives. A group whose processes belong to several threads is drawn by each of them; units whose states fill whole
+/// groups share none.
 template <class Model, class S, class Draw, class Put>
 MYRIAD_FUNCTION void each_process_of_thread(Draw&& draw, Put&& put) {
     constexpr int per_group = normals_per_block<real_of<S>>;

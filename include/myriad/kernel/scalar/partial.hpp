@@ -269,8 +269,8 @@ MYRIAD_FUNCTION partials<S, count> quotient_rule(const S& quotient, const S& v, 
     return -detail::weighted_unless_overflown(quotient, v, dv) * detail::reciprocal_or_zero(v);
 }
 
-/// d, the derivative at x of a function that becomes flat faster than x grows, as tanh; but zero where x has
-/// overflowed, or dx has and x nearly so: the slope is zero there, and times infinity no number.
+/// d, the derivative of a function that becomes flat faster than its argument x grows, as tanh; but zero, its limit,
+/// where x has overflowed, or dx has and x nearly so: there d may be a slope of zero times infinity.
 template <class S, class Derivative>
 MYRIAD_FUNCTION Derivative flat_far_out(const S& x, const Derivative& dx, const Derivative& d) {
     return select(detail::has_overflown(x, dx), derivative_of_constant<Derivative>::get(), d);

@@ -32,7 +32,7 @@ enum class reduction_kind : std::int32_t {
     maximum,     // the largest `ordered` number, 0 for none
     minimum,     // the largest `ordered` number of the negative ones
     sum,         // the digits of an exact sum, and how many numbers are in it
-    moments,     // the same of all inner values, and then of their squares
+    moments,     // two of these: of the numbers, for all inner values, and behind them of their squares
     statuses,    // how many instances have each status
 };
 
@@ -104,7 +104,7 @@ MYRIAD_FUNCTION std::int64_t place_in_histogram(double value, const double* edge
     return low;
 }
 
-/// A square as two numbers whose sum it is: of numbers that are small enough to be squared, and to be added up.
+/// A square as the exact sum of two numbers. It is not known of numbers so large that it, or a sum of many, overflows.
 struct exact_square {
     double rounded, rest;
     bool is_known;

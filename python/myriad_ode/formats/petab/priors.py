@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ...inference import priors
-from ...inference.priors import LaplacePrior, NormalPrior, Prior, ScaledPrior, log_normal_prior
+from ...inference.priors import LaplacePrior, NormalPrior, Prior, ScaledPrior, UniformPrior, log_normal_prior
 from ..sbml.math import Refused
 
 _of_scale = {"parameterScaleNormal": "normal", "parameterScaleUniform": "uniform", "parameterScaleLaplace": "laplace",
@@ -53,28 +53,31 @@ _of_version_2: dict[str, Callable[..., Prior]] = {
     "exponential": priors.exponential, "chisquare": priors.chi_squared, "rayleigh": priors.rayleigh,
     "log-normal": log_normal_prior, "log-uniform": priors.log_uniform,
     "log-laplace": lambda location, width: LaplacePrior("log", location, width, True)}
-_beyond = 1e-9  # the part of a prior that is left out on a side without a bound
+_beyond = 1e-9  # the part of a prior that is left out on a side with an infinite bound
 
 
 def read_prior_2(parameter: Any) -> tuple[Prior, tuple[float, float]]:
-    """The prior of an estimated parameter of version 2, and the interval outside which its density is zero: without one
-    of its own it is uniform between the bounds, which cut off what is beyond them of any other. Where a bound is
-    infinite, a quantile of the prior takes its place, as fits need one."""
+    """The prior of an estimated parameter of version 2, and the interval outside which its density is zero. A parameter
+    without a prior has a uniform one between its bounds; bounds cut off any other. A quantile of the prior takes the
+    place of an infinite bound, as fits need finite ones."""
     kind = str(getattr(parameter.prior_distribution, "value", parameter.prior_distribution or "uniform"))
     bounds = float(parameter.lb), float(parameter.ub)
     given = [float(v) for v in parameter.prior_parameters or bounds]
-    where = f"the table of parameters, row '{parameter.id}', column prior"
+    where = f"the table of parameters, row '{parameter.id}', column priorDistribution"
+    nothing_left = "the prior is zero between the bounds"
     if kind == "uniform":
         least, most = max(given[0], bounds[0]), min(given[1], bounds[1])
-        return ScaledPrior(None, float(np.log(most - least)) if most - least < np.inf else 0.0), (least, most)
+        if least > most:
+            raise Refused(f"{where}: {nothing_left}")
+        return UniformPrior(float(np.log(most - least)) if most - least < np.inf else 0.0), (least, most)
     if kind not in _of_version_2:
-        raise Refused(f"{where}Distribution: {kind}; supported are {', '.join(['uniform', *_of_version_2])}")
+        raise Refused(f"{where}: {kind}; supported are {', '.join(['uniform', *_of_version_2])}")
     prior = _of_version_2[kind](*given)  # whose parameters petab has checked
     with np.errstate(all="ignore"):
         whole = parameter.model_copy(update={"lb": -np.inf, "ub": np.inf}).prior_dist
         within = float(whole.cdf(bounds[1]) - whole.cdf(bounds[0]))
     if not within > 0:
-        raise Refused(f"{where}Distribution: the prior is zero between the bounds")
+        raise Refused(f"{where}: {nothing_left}")
     support = given if kind == "log-uniform" else (float(whole.ppf(0)), float(whole.ppf(1)))
     least, most = (end if np.isfinite(end) else float(whole.ppf(abs(side - _beyond)))
                    for side, end in enumerate(bounds))

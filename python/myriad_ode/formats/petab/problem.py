@@ -69,12 +69,12 @@ class PetabProblem:
 def read_petab(path: Path) -> PetabProblem:
     """The problem of a YAML file of PEtab, version 1 or 2. It needs the packages petab and python-libsbml.
 
-    Several conditions, observables and noise by any formula with placeholders that measurements set, noise that is
-    estimated, normally distributed on a linear or logarithmic scale, priors that are normal or Laplace's on some
-    scale, or uniform. Experiments that begin in steady states of other conditions, and measurements in steady states,
-    at the time inf. Of version 2 also experiments of several periods, whose conditions change values at given times by
-    formulas. Raises `my.Error` with table, row and column for what is not supported, as noise of Laplace's
-    distribution, and for what petab itself finds wrong."""
+    It may have several conditions; observables and noise by any formula, with placeholders that measurements set;
+    noise that is estimated, with a normal or a Laplace distribution on a linear or logarithmic scale; priors; steady
+    states of other conditions in which experiments begin, and measurements in steady states, at the time inf. Problems
+    of version 2 may also have experiments of several periods, whose conditions change values at given times by
+    formulas. Raises `my.Error` with table, row and column for what is not supported (docs/fits.md#petab-problems), and
+    for what petab itself finds wrong."""
     return _Reader(_read(path)).problem()
 
 

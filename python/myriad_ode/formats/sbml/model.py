@@ -7,7 +7,7 @@ import math
 import os
 from typing import TYPE_CHECKING, Any
 
-from ...base.errors import Error, listed, users_line
+from ...base.errors import Error, quoted, users_line
 from ...codegen.model import Model
 from ...models.components import Components, name_of, unknown
 from ...symbolic import symbols as sym
@@ -154,7 +154,7 @@ class SbmlModel(Model):
         values = Components(self).completed(dict(given or {}), 0.0)
         missing = [n for n in [*self.states, *self.parameters] if n not in values]
         if missing:
-            raise Error(f"the file has no value of {listed(missing)}: give one")
+            raise Error(f"the file has no value of {quoted(missing)}: give one")
         return {n: float(v) for n, v in values.items()}
 
 

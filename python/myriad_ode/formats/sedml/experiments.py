@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -36,13 +37,13 @@ class TimeCourse:
     changes: dict[str, Array] = field(default_factory=dict)  #: what a repeated task sets, one value for each repetition
 
     def solve(self, sweep: Any = None, **options: Any) -> Run:
-        """Integrates the model, by default once with its own values, or with those of a repeated task as instances of
-        a sweep, and samples all states at the times. Arguments are those of `my.solve`."""
+        """Integrates the model and samples all states at the times. Without a sweep, the instances are those of a
+        repeated task, or one with the model's own values. Arguments are those of `my.solve`."""
         if sweep is None:
-            known = {self.model.aliases.get(name, name): values for name, values in self.changes.items()} if isinstance(
-                self.model, SbmlModel) else self.changes
-            sweep = {name: values for name, values in known.items() if name in self.model.parameters}
-            starts = {name: values for name, values in known.items() if name not in sweep}
+            aliases = _aliases(self.model)
+            changed = {aliases.get(name, name): values for name, values in self.changes.items()}
+            sweep = {name: values for name, values in changed.items() if name in self.model.parameters}
+            starts = {name: values for name, values in changed.items() if name not in sweep}
             options = {"start": starts, **options} if starts else options
         times = {"time": (self.begin, float(self.times[-1])), "samples": self.times}
         return solve(self.model, sweep or None, **{**times, **options})
@@ -72,11 +73,16 @@ def read_sedml(path: Path | str) -> dict[str, TimeCourse]:
     return found
 
 
-_most_repetitions = 10_000_000
+def _aliases(model: RecordedModel) -> Mapping[str, str]:
+    """The model's components by the other names that files of SBML have for them."""
+    return model.aliases if isinstance(model, SbmlModel) else {}
 
 
 def _tag(element: ElementTree.Element) -> str:
     return element.tag.rpartition("}")[2]
+
+
+_most_steps_of_range = 10_000_000
 
 
 class _Document:
@@ -111,10 +117,11 @@ class _Document:
         name, of_tasks = task.get("id", ""), self._listed("listOfSubTasks", task)
         wanted = of_tasks[0].get("task", "") if len(of_tasks) == 1 else ""
         if wanted not in courses:
-            self._refuse(f"the repeated task '{name}' has {len(of_tasks)} tasks, '{wanted}': only one <task> is "
-                         "repeated")
+            repeats = ", ".join(f"'{one.get('task', '')}'" for one in of_tasks) or "nothing"
+            self._refuse(f"the repeated task '{name}' repeats {repeats}: only one <task> can be repeated")
         if task.get("resetModel", "true") not in ("true", "1"):
-            self._refuse(f"the repeated task '{name}' goes on from where the last repetition ended: set resetModel")
+            self._refuse(f"the repeated task '{name}' goes on from where the last repetition ended: write "
+                         "resetModel=\"true\"")
         ranges = {one.get("id", ""): self._values(one, name) for one in self._listed("listOfRanges", task)}
         count = len(ranges.get(task.get("range", ""), ()))
         changes: dict[str, Array] = {}
@@ -127,14 +134,11 @@ class _Document:
             changes[of_id.group(2)] = ranges[symbols[0]][:count]
         if not (changes and count) or any(len(values) != count for values in changes.values()):
             self._refuse(f"the repeated task '{name}' sets nothing, or has no range with a value for each repetition")
-        unknown = [one for one in changes if one not in self._known(courses[wanted].model)]
-        if unknown:
-            self._refuse(f"the repeated task '{name}' sets '{unknown[0]}', which is no parameter and no species")
+        model = courses[wanted].model
+        for one in changes:
+            if one not in {*model.parameters, *model.states, *_aliases(model)}:
+                self._refuse(f"the repeated task '{name}' sets '{one}', which is no parameter and no species")
         return replace(courses[wanted], name=name, changes=changes)
-
-    def _known(self, model: RecordedModel) -> set[str]:
-        """What a repeated task can set."""
-        return {*model.parameters, *model.states, *(model.aliases if isinstance(model, SbmlModel) else ())}
 
     def _values(self, one: ElementTree.Element, name: str) -> Array:
         """The values of a range."""
@@ -144,7 +148,7 @@ class _Document:
             self._refuse(f"the repeated task '{name}' has a <{_tag(one)}>: only uniform and vector ranges are read")
         first, last = (self._number(one, end) for end in ("start", "end"))
         steps = self._number(one, "numberOfSteps" if "numberOfSteps" in one.attrib else "numberOfPoints")
-        if not 1 <= steps <= _most_repetitions or steps != int(steps):
+        if not 1 <= steps <= _most_steps_of_range or steps != int(steps):
             self._refuse(f"the repeated task '{name}' has a range of {steps:g} steps")
         if one.get("type", "linear") == "linear":
             return np.linspace(first, last, int(steps) + 1)
