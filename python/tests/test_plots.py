@@ -284,6 +284,26 @@ def test_bands_lie_between_quantiles_that_belong_together():
             plots.bands(t, y[:3], quantiles)
 
 
+def test_quantiles_of_the_population_are_as_often_within_those_of_samples_as_the_confidence_says():
+    random, wanted = np.random.default_rng(3), np.array([0.05, 0.5, 0.9])
+    low, high = my.reduce.confidence_levels(wanted, 500, level=0.9)
+    samples = random.random((4000, 500))  # whose quantiles are their levels
+    lower, upper = np.quantile(samples, low, axis=1).T, np.quantile(samples, high, axis=1).T
+    np.testing.assert_allclose(((lower <= wanted) & (wanted <= upper)).mean(axis=0), 0.9, atol=0.02)
+    assert my.reduce.confidence_levels([0, 1], 10).tolist() == [[0, 1], [0, 1]]
+    with pytest.raises(my.Error, match="give quantiles from 0 to 1"):
+        my.reduce.confidence_levels([5, 95], 100)
+
+
+def test_bands_show_within_which_values_quantiles_are():
+    t, y = np.arange(3.0), np.array([[0.0, 1, 2], [3, 4, 5]])
+    axes = plots.bands(t, y, [0.1, 0.9], within=[y - 0.5, y + 0.5])
+    drawn = [line.get_ydata().tolist() for line in axes.lines]
+    assert drawn == [*(y - 0.5).tolist(), *(y + 0.5).tolist()]
+    with pytest.raises(my.Error, match=r"within has shape \(2, 2, 2\)"):
+        plots.bands(t, y, [0.1, 0.9], within=np.zeros((2, 2, 2)))
+
+
 def test_bands_of_a_run_are_of_the_instances_that_did_not_fail():
     y = np.outer(np.arange(11.0), [1, 2, 3])
     run = ARun(my.grid(k=np.arange(11.0)), samples={"x": y})

@@ -151,11 +151,12 @@ def time_series(t: Any, y: Any, *, labels: Sequence[str] | None = None, xlabel: 
     return axes
 
 
-def bands(t: Any, y: Any, quantiles: Sequence[float], *, xlabel: str | None = None, ylabel: str | None = None,
-          axes: Axes | None = None, **style: Any) -> Any:
+def bands(t: Any, y: Any, quantiles: Sequence[float], *, within: Any = None, xlabel: str | None = None,
+          ylabel: str | None = None, axes: Axes | None = None, **style: Any) -> Any:
     """Quantiles over time: y has a row for each of `quantiles`, as [0.05, 0.5, 0.95], in ascending order. Of equally
-    many on either side, each two that belong together bound a band, and one in the middle is a line. Further arguments
-    go to matplotlib's `fill_between`."""
+    many on either side, each two that belong together bound a band, and one in the middle is a line. Dotted lines are
+    `within`, the lower and upper values between which each quantile may be, both of y's shape
+    (`my.reduce.confidence_levels`). Further arguments go to matplotlib's `fill_between`."""
     ylabel = label_of(y, ylabel)
     t, y, of = numbers(t, "t", (1,)), numbers(y, "y", (2,)), checked_quantiles(quantiles)
     if y.shape != (len(of), len(t)):
@@ -171,6 +172,11 @@ def bands(t: Any, y: Any, quantiles: Sequence[float], *, xlabel: str | None = No
             "collections.PolyCollection"))
     if len(of) % 2:
         axes.plot(t, y[pairs], color=colour, linewidth=1.3, label="median")
+    if within is not None:
+        bounds = numbers(within, "within", (3,))
+        if bounds.shape != (2, *y.shape):
+            raise Error(f"within has shape {bounds.shape}: give lower and upper values of y, of shape {(2, *y.shape)}")
+        axes.plot(t, bounds.reshape(-1, len(t)).T, color=colour, linewidth=0.8, linestyle=":")
     legend(axes)
     axes.set_xlabel("t" if xlabel is None else xlabel)
     axes.set_ylabel(ylabel)

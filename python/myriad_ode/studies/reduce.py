@@ -7,6 +7,7 @@ left out, but by `total`. Results do not depend on how the instances are divided
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from statistics import NormalDist
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,7 +20,8 @@ from ..symbolic.axes import Axis
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-__all__ = ["histogram", "histograms", "maximum", "mean", "minimum", "quantiles", "standard_error", "total", "variance"]
+__all__ = ["confidence_levels", "histogram", "histograms", "maximum", "mean", "minimum", "quantiles",
+           "standard_error", "total", "variance"]
 
 
 class Reduction:
@@ -77,6 +79,19 @@ def quantiles(variable: str, quantiles: npt.ArrayLike, edges: Axis | npt.ArrayLi
     or above the last one."""
     wanted = np.atleast_1d(np.asarray(quantiles, dtype=float)).tolist()
     return Reduction("quantiles_of", _variable(variable), wanted, _edges(edges))
+
+
+def confidence_levels(quantiles: npt.ArrayLike, draws: int, level: float = 0.95) -> np.ndarray:
+    """Which quantiles of so many independent draws bound the population's own with that confidence: a row of lower and
+    one of upper ones, for `my.reduce.quantiles` of the same study. How many draws lie below a quantile p of the
+    population has the binomial distribution, here its normal approximation: p ± z sqrt(p (1 - p) / draws). H. A. David,
+    H. N. Nagaraja, Order Statistics (2003), section 7.1."""
+    wanted = np.atleast_1d(np.asarray(quantiles, dtype=float))
+    if not ((wanted >= 0) & (wanted <= 1)).all() or not 0 < level < 1 or draws < 1:
+        raise Error(f"quantiles {wanted.tolist()} of {draws} draws with a confidence of {level}: give quantiles from 0 "
+                    "to 1, at least one draw, and a confidence between 0 and 1")
+    reach = NormalDist().inv_cdf((1 + level) / 2) * np.sqrt(wanted * (1 - wanted) / draws)
+    return np.clip([wanted - reach, wanted + reach], 0, 1)
 
 
 def minimum(variable: str) -> Reduction:
