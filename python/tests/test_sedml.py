@@ -189,7 +189,7 @@ def test_a_repeated_task_sets_initial_values_and_several_things_at_once(folder):
     (repeated(EVEN, set_to(K, "<apply><times/><ci>r</ci><cn>2</cn></apply>")), "to a formula: only values of a range"),
     (repeated(EVEN, set_to(K.replace("'k'", "'q'"))), "sets 'q', which is no parameter and no species"),
     (repeated(EVEN, set_to(K, "<ci>q</ci>")), "to a formula: only values of a range"),
-    (repeated(EVEN, set_to(S.replace("Concentration", "Amount"))), "sets initialAmount of 'S': set initialConcentration"),
+    (repeated(EVEN, set_to(S.replace("Concentration", "Amount"))), "sets initialAmount of 'S': set initialConc"),
     (repeated(EVEN, set_to(K.replace("value", "constant"))), "sets constant of 'k': set value"),
     (repeated(EVEN, set_to(K).replace('"m"', '"n"')), "of another model than that of 'one'"),
     (repeated(EVEN, ""), "sets nothing"),
