@@ -525,6 +525,12 @@ def test_a_ring_that_is_too_short_and_lags_that_cannot_be_are_statuses():
     assert list(enough.status) == ["success"]
 
 
+def test_slopes_after_a_hook_see_the_history_as_the_hook_has_left_it():
+    model = my.model({x: my.delayed(y, 10), y: 0}, after_step={k: k + 1}, history={y: k})
+    run = my.solve(model, {k: [1.0, 2.0]}, start={x: 0, y: 0}, time=(0, 4), method="runge_kutta_4", step=0.25)
+    np.testing.assert_array_equal(run["x"], [0.25 * (16 * first + 120) for first in (1, 2)])
+
+
 # -- Outputs of files --------------------------------------------------------------------------------------------------
 
 def test_an_output_of_a_file_reads_the_past_of_its_samples():

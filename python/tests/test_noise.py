@@ -434,6 +434,13 @@ def test_tolerances_without_a_step_give_adaptive_steps_along_the_same_path():
     assert fixed.report.rejected_steps == 0 and np.abs(fixed["x"] - run["x"]).max() < 1e-2
 
 
+def test_steps_do_not_depend_on_where_the_path_goes_in_them():
+    """A relative tolerance has the same steps along all paths of a geometric Wiener process."""
+    run = my.solve(my.model({x: mu * x}, noise={x: sigma * x}), {mu: 0.3, sigma: 1.0}, start={x: 1}, time=(0, 1),
+                   method="sriw1", rtol=1e-2, atol=1e-9, noise_step=0.25, seed=11, paths=500)
+    assert run.report.failed == 0 and set(run.accepted_steps) == {32} and len(set(run.rejected_steps)) == 1
+
+
 def test_adaptive_steps_of_additive_noise_begin_with_a_64th_of_the_domain():
     model = my.model({x: -x**3}, noise={x: 0.01})
     run = my.solve(model, start={x: 0}, time=(0, 1), method="sra1", rtol=1e-2, atol=1e-2, seed=1, paths=3)

@@ -100,10 +100,13 @@ MYRIAD_FUNCTION error_scale<S, n_controlled<Model>> scale_of_errors(const kernel
         const S atol = S(detail::absolute_tolerance_of(args, c)), rtol = S(detail::relative_tolerance_of(args, c));
         const S size = larger_magnitude(y[c], y1[c]);
         if constexpr (!tells_infinity<S>) largest = c == 0 ? size : larger_scale(largest, size);
+        // Along a path, what is compared must not depend on where the path goes: else longer steps are taken where it
+        // grows, and means over paths are off.
+        const S compared = stochastic_method<Method> ? abs(y[c]) : size;
         if constexpr (adds_tolerances<Method>) {
-            scale.of[c] = fma(rtol, size, atol);
+            scale.of[c] = fma(rtol, compared, atol);
         } else {
-            scale.of[c] = larger_scale(atol, rtol * size);
+            scale.of[c] = larger_scale(atol, rtol * compared);
         }
     });
     scale.finite = tells_infinity<S> ? mask_of<S>(true) : largest <= S(largest_of<real_of<S>>);

@@ -42,6 +42,7 @@ struct hook_driver {
             // Compares the hook's input with its output, so that the compiler sees which members it leaves alone.
             changed = accepted & differs(before, after);
             adopt(accepted, before, after);
+            if constexpr (has_delays<Model>) s.data.past.forget_recalled();
             if (MYRIAD_UNLIKELY(any(stops))) s.end_lanes(stops, status::stopped_by_user);
             if constexpr (writes_time_domain<Model>) {
                 for_each_lane(accepted & (before.t_end != s.data.t_end), [&](int i) MYRIAD_LAMBDA { retarget(i); });
@@ -374,8 +375,10 @@ private:
     /// After a hook changed lanes that were as in `before`: slopes and event functions are evaluated again.
     MYRIAD_FUNCTION void follow_up(const mask& changed, const lane_data<Model, S>& before) {
         s.slopes.invalidate(changed);
-        if constexpr (has_delays<Model>)
+        if constexpr (has_delays<Model>) {
             for_each_lane(changed, [&](int i) MYRIAD_LAMBDA { s.data.past.lane[i].resumes = true; });
+            s.data.past.forget_recalled();
+        }
         if constexpr (has_events<Model>) {
             const inputs<Model, S>& p = before;
             events.update_after_hook(changed, detail::evaluate_events<Model>(s.now(), before.y, p));

@@ -271,6 +271,7 @@ inline constexpr bool keeps_end_of_phase = requires {
 template <class Model, class S, class Hook>
 MYRIAD_FUNCTION action run_on_lane(lane_data<Model, S>& data, int i, Hook&& hook) {
     if constexpr (has_delays<Model>) detail::recall<Model>(data.t, data.y, static_cast<const inputs<Model, S>&>(data));
+    if constexpr (has_delays<Model>) data.past.forget_recalled();  // `data` alone knows what the hook changes
     if constexpr (lanes_of<S> == 1) {
         lane<Model, S> view(data);
         return detail::action_of([&]() MYRIAD_LAMBDA { return hook(view); });

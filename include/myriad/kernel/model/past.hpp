@@ -88,6 +88,11 @@ struct past_view {
         MYRIAD_UNROLL
         for (int i = 0; i < lanes; ++i) lane[i].recalled = get_lane(t, i);
     }
+    /// A hook may have changed what histories and lags depend on.
+    MYRIAD_FUNCTION void forget_recalled() const {
+        MYRIAD_UNROLL
+        for (int i = 0; i < lanes; ++i) lane[i].recalled = nan_of<R>;
+    }
 
     /// Looks at the step that delayed value j of functions at t sees at that time: the last that begins there or
     /// before.

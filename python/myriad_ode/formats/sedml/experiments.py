@@ -110,10 +110,13 @@ class _Document:
         """The time courses by the names of their tasks, those that others repeat too."""
         tasks = {task.get("id", ""): task for task in self._listed("listOfTasks")}
         found = {name: self._course(task) for name, task in tasks.items() if _tag(task) != "repeatedTask"}
-        return {name: found[name] if name in found else self._repeated(task, found) for name, task in tasks.items()}
+        models = {name: task.get("modelReference", "") for name, task in tasks.items()}
+        return {name: found[name] if name in found else self._repeated(task, found, models)
+                for name, task in tasks.items()}
 
-    def _repeated(self, task: ElementTree.Element, courses: dict[str, TimeCourse]) -> TimeCourse:
-        """A time course that is repeated with other values."""
+    def _repeated(self, task: ElementTree.Element, courses: dict[str, TimeCourse],
+                  models: dict[str, str]) -> TimeCourse:
+        """A time course that is repeated with other values; `models` are those of tasks."""
         name, of_tasks = task.get("id", ""), self._listed("listOfSubTasks", task)
         wanted = of_tasks[0].get("task", "") if len(of_tasks) == 1 else ""
         if wanted not in courses:
@@ -131,6 +134,10 @@ class _Document:
             if len(symbols) != 1 or symbols[0] not in ranges or of_id is None:
                 self._refuse(f"the repeated task '{name}' sets {change.get('target')} to a formula: only values of a "
                              "range, <ci>, of a parameter or a species, [@id='k'], are read")
+            if change.get("modelReference", models[wanted]) != models[wanted]:
+                self._refuse(f"the repeated task '{name}' sets {change.get('target')} of another model than that of "
+                             f"'{wanted}'")
+            self._check_set(name, models[wanted], of_id.group(2), (of_id.group(3) or "").removeprefix("/@"))
             changes[of_id.group(2)] = ranges[symbols[0]][:count]
         if not (changes and count) or any(len(values) != count for values in changes.values()):
             self._refuse(f"the repeated task '{name}' sets nothing, or has no range with a value for each repetition")
@@ -139,6 +146,22 @@ class _Document:
             if one not in {*model.parameters, *model.states, *_aliases(model)}:
                 self._refuse(f"the repeated task '{name}' sets '{one}', which is no parameter and no species")
         return replace(courses[wanted], name=name, changes=changes)
+
+    def _check_set(self, task: str, model: str, one: str, attribute: str) -> None:
+        """Refuses a target that is no value, or that of a species in other units than it has in its equations."""
+        data, language = self._changed(model, [])
+        root = xml_of(data, model)
+        found = {element.get("id", ""): element for element in root.iter() if "id" in element.attrib}
+        element = found.get(one)
+        wanted = ["", "value", "size"] if "cellml" not in language else ["", "initial_value"]
+        if element is not None and _tag(element) == "species":
+            home = found.get(element.get("compartment", ""))
+            is_amount = element.get("hasOnlySubstanceUnits", "false") in ("true", "1") or (
+                home is not None and home.get("spatialDimensions") in ("0", "0.0"))
+            wanted = ["", "initialAmount" if is_amount else "initialConcentration"]
+        if attribute not in wanted:
+            self._refuse(f"the repeated task '{task}' sets {attribute} of '{one}': set {wanted[1]}, as which its "
+                         "equations have it")
 
     def _values(self, one: ElementTree.Element, name: str) -> Array:
         """The values of a range."""
