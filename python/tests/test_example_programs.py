@@ -399,10 +399,10 @@ def test_noise(run_program):
     """Along the same paths, as seed and instances are the same."""
     printed = run_program("noise")
     x, sigma = my.state("x"), my.parameter("sigma")
-    model = my.model({x: x - x**3}, noise={x: sigma}, after_step={my.end_phase: x > 1})
+    model = my.model({x: x - x**3}, noise={x: sigma}, events=my.event(x - 1, stop_after=1))
     for value in (0.5, 0.6, 0.7):
         times = my.solve(model, {sigma: value}, paths=4000, start={x: -1}, time=(0, 10_000), step=0.02, seed=1,
-                         device="cpu").t_last
+                         method="euler_maruyama", device="cpu").t_last
         assert f"sigma {value}: {times.mean():.2f} +- {times.std() / 4000**0.5:.2f}, expected" in printed
 
 
