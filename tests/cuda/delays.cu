@@ -2,10 +2,10 @@
 // Models with delays: alone, with sensitivities by their parameters, of so many units that loops over their delayed
 // values are not written out, and of units that a team of threads integrates.
 //
-// limit: integrate_ensemble<jumping, dormand_prince_5> registers 96 stack 64 spill 64
-// limit: integrate_ensemble<smooth_by_parameters, runge_kutta_4> registers 168 stack 96 spill 480
-// limit: integrate_ensemble<coupled_units<delayed_units::phase, 20>, runge_kutta_4> registers 168 stack 10496 spill 24000
-// limit: integrate_ensemble<part_of_units<coupled_units<delayed_units::phase, 64>, 16>, dormand_prince_5> registers 255 stack 40 spill 0
+// limit: integrate_ensemble<jumping, dormand_prince_5> registers 96 stack 40 spill 0
+// limit: integrate_ensemble<smooth_by_parameters, runge_kutta_4> registers 204 stack 0 spill 0
+// limit: integrate_ensemble<coupled_units<delayed_units::phase, 20>, runge_kutta_4> registers 168 stack 13312 spill 52480
+// limit: integrate_ensemble<part_of_units<coupled_units<delayed_units::phase, 64>, 32>, dormand_prince_5> registers 234 stack 40 spill 0
 
 #include <myriad/cuda/kernel.cuh>
 #include <myriad/methods.hpp>
