@@ -75,8 +75,9 @@ MYRIAD_APPROXIMATION(double, approximate_inverse_root, "rsqrt.approx.ftz.f64", "
 MYRIAD_APPROXIMATION(float, approximate_inverse_root, "rsqrt.approx.ftz.f32", "f")
 MYRIAD_APPROXIMATION(float, approximate_log2, "lg2.approx.ftz.f32", "f")
 MYRIAD_APPROXIMATION(float, approximate_exp2, "ex2.approx.ftz.f32", "f")
+MYRIAD_APPROXIMATION(float, approximate_root, "sqrt.approx.ftz.f32", "f")
 MYRIAD_APPROXIMATION(float, approximate_log2_of_any, "lg2.approx.f32", "f")
-MYRIAD_APPROXIMATION(float, approximate_root, "sqrt.approx.f32", "f")
+MYRIAD_APPROXIMATION(float, approximate_root_of_any, "sqrt.approx.f32", "f")
 #undef MYRIAD_APPROXIMATION
 /// value (1 + growth) where |x| is at most a bound, else the value: without a choice between the two.
 __device__ __forceinline__ float grown_up_to(float bound, float x, float value, float growth) {

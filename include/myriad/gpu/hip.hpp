@@ -130,11 +130,12 @@ __device__ __forceinline__ double approximate_inverse_root(double x) { return __
 __device__ __forceinline__ float approximate_inverse_root(float x) { return __builtin_amdgcn_rsqf(x); }
 __device__ __forceinline__ float approximate_log2(float x) { return __builtin_amdgcn_logf(x); }
 __device__ __forceinline__ float approximate_exp2(float x) { return __builtin_amdgcn_exp2f(x); }
+__device__ __forceinline__ float approximate_root(float x) { return __builtin_amdgcn_sqrtf(x); }
 __device__ __forceinline__ float approximate_log2_of_any(float x) {
     const bool subnormal = x < 0x1p-126f;
     return __builtin_amdgcn_logf(subnormal ? 0x1p23f * x : x) - (subnormal ? 23.0f : 0.0f);
 }
-__device__ __forceinline__ float approximate_root(float x) {
+__device__ __forceinline__ float approximate_root_of_any(float x) {
     const bool subnormal = x < 0x1p-126f;
     return __builtin_amdgcn_sqrtf(subnormal ? 0x1p24f * x : x) * (subnormal ? 0x1p-12f : 1.0f);
 }

@@ -131,11 +131,12 @@ struct exponential {
     static MYRIAD_FUNCTION B finite_or_same(const B& value, const B& x) {
         return A::select(x <= B(largest_of<T>), value, x + x);
     }
-    static MYRIAD_FUNCTION B log(const B& x) {
+    static MYRIAD_FUNCTION B log_of_finite(const B& x) {
         const scaled parts = split(x);
         const B rest = log_of_fraction(parts.fraction, parts.exponent * B(constants::ln_2_rest));
-        return finite_or_same(A::multiply_add(parts.exponent, B(constants::ln_2_head), rest), x);
+        return A::multiply_add(parts.exponent, B(constants::ln_2_head), rest);
     }
+    static MYRIAD_FUNCTION B log(const B& x) { return finite_or_same(log_of_finite(x), x); }
     static MYRIAD_FUNCTION B log2(const B& x) {
         const scaled parts = split(x);
         const B rest = log_of_fraction(parts.fraction, B(T(0)));

@@ -74,7 +74,11 @@ struct fast_float {
         if (MYRIAD_UNLIKELY(!usual)) result = pow_of_any(x, y);
         return result;
     }
-    static MYRIAD_FUNCTION T sqrt(T x) { return gpu::approximate_root(x); }
+    static MYRIAD_FUNCTION T sqrt(T x) { return gpu::approximate_root_of_any(x); }
+    /// For x in (0, 1]. The hardware's logarithm is as inexact near one as x is.
+    static MYRIAD_FUNCTION T root_of_minus_log(T x) {
+        return gpu::approximate_root(std::fabs(gpu::approximate_log2(x) * exponential_constants<T>::ln_2));
+    }
 
     /// The angle of the slope y / x, turned by pi where x is negative, as -0 is.
     static MYRIAD_FUNCTION T atan2(T y, T x) {

@@ -11,6 +11,7 @@
 #include "myriad/kernel/core/vec.hpp"
 #include "myriad/kernel/scalar/arithmetic.hpp"
 #include "myriad/kernel/scalar/exponential.hpp"
+#include "myriad/kernel/scalar/fast_float.hpp"
 #include "myriad/kernel/scalar/math.hpp"
 #include "myriad/kernel/scalar/trigonometry.hpp"
 
@@ -20,6 +21,8 @@ namespace myriad::detail::inline MYRIAD_TARGET {
 /// may be anything there.
 template <class B>
 struct random_words;
+
+inline constexpr std::uint32_t sign_bit = 0x80000000;
 
 template <std::floating_point T>
 struct random_words<T> {
@@ -37,9 +40,12 @@ struct random_words<T> {
         const std::uint64_t bits = std::uint64_t{high} << 32 | low;
         return __builtin_bit_cast(double, bits >> 12 | 0x3ff0000000000000);
     }
-    /// The word as an integer with a sign, without its last bit if `halved`, rounded.
+    /// The word as an integer with a sign, rounded.
     static MYRIAD_FUNCTION float whole(word a) { return static_cast<float>(static_cast<std::int32_t>(a)); }
-    static MYRIAD_FUNCTION float half_of(word a) { return static_cast<float>(static_cast<std::int32_t>(a >> 1)); }
+    /// The number, with its sign changed if the first bit of the word is set.
+    static MYRIAD_FUNCTION float with_sign_of(float x, word a) {
+        return __builtin_bit_cast(float, __builtin_bit_cast(word, x) ^ (a & sign_bit));
+    }
     static MYRIAD_FUNCTION T root(T x) { return functions<T>::sqrt(x); }
 };
 
@@ -75,6 +81,33 @@ MYRIAD_FUNCTION void box_muller(const B& u, const B& half_turns, B& first, B& se
     second = radius * sine;
 }
 
+/// The root of -log(u), for u in (0, 1].
+template <class B>
+MYRIAD_FUNCTION B root_of_minus_log(const B& u) {
+#if MYRIAD_FAST_FLOAT
+    if constexpr (std::is_same_v<B, float>) return fast_float<B>::root_of_minus_log(u);
+#endif
+    return random_words<B>::root(-exponential<B>::log_of_finite(u));
+}
+
+/// The same in single precision from two words, with half of the operations. The first bits of the words choose a
+/// quarter of the plane. In it the angle is pi / 4 + r, with r between -pi / 4 and pi / 4, so that none is reduced:
+/// its cosine is (cos(r) - sin(r)) / sqrt(2), its sine (cos(r) + sin(r)) / sqrt(2).
+template <class B>
+MYRIAD_FUNCTION void box_muller_of_words(const typename random_words<B>::word& of_radius,
+                                         const typename random_words<B>::word& of_angle, B& first, B& second) {
+    using A = arithmetic<B>;
+    using T = typename A::real;
+    using words = random_words<B>;
+    using word = typename words::word;
+    const B u = A::multiply_add(words::whole(of_radius & word(~sign_bit)), B(T(0x1p-31)), B(T(0x1p-32)));
+    const B radius = detail::root_of_minus_log(u);
+    const typename trigonometry<B>::angle r{words::whole(of_angle << 1) * B(functions<T>::pi * T(0x1p-33)), {}};
+    const B cosine = trigonometry<B>::cosine_of_rest(r), sine = trigonometry<B>::sine_of_rest(r);
+    first = words::with_sign_of(radius * (cosine - sine), of_radius);
+    second = words::with_sign_of(radius * (cosine + sine), of_angle);
+}
+
 /// The normal numbers of a counter. In double precision u is the midpoint of one of 2^52 equal parts of (0, 1), so that
 /// they are within +-8.6; in single precision a multiple of 2^-31 and 2^-32 more, rounded, which gives +-6.66.
 template <class B>
@@ -89,12 +122,8 @@ MYRIAD_FUNCTION void normal_numbers(typename random_words<B>::word (&w)[4], std:
         const B angle = A::multiply_add(B(T(2)), words::from_one_to_two(w[2], w[3]), B(T(-3)));
         detail::box_muller(u, angle, z[0], z[1]);
     } else {
-        const auto pair = [&](const auto& of_radius, const auto& of_angle, B& first, B& second) MYRIAD_LAMBDA {
-            const B u = A::multiply_add(words::half_of(of_radius), B(T(0x1p-31)), B(T(0x1p-32)));
-            detail::box_muller(u, words::whole(of_angle) * B(T(0x1p-31)), first, second);
-        };
-        pair(w[0], w[1], z[0], z[1]);
-        pair(w[2], w[3], z[2], z[3]);
+        detail::box_muller_of_words<B>(w[0], w[1], z[0], z[1]);
+        detail::box_muller_of_words<B>(w[2], w[3], z[2], z[3]);
     }
 }
 
@@ -110,8 +139,8 @@ struct path_integers {
     using word = std::uint32_t;
 };
 
-/// What a block of a path is the block of. The counter is (the low word of `cell`; `owner`; 8 bits of `cell`, 16 of
-/// `node`, 8 of `group`; `epoch`).
+/// What a block of a path is the block of. The counter is (the low word of `cell`; `owner`; 8 further bits of `cell`,
+/// or zero if it has none, 16 of `node`, 8 of `group`; `epoch`).
 template <class S>
 struct block_place {
     typename path_integers<S>::cell cell;
@@ -125,7 +154,8 @@ template <class S>
 struct normals_of {
     static MYRIAD_FUNCTION vec<S, normals_per_block<S>> at(const block_place<S>& p, std::uint32_t key_0,
                                                            std::uint32_t key_1) {
-        const auto high = static_cast<std::uint32_t>(static_cast<std::uint64_t>(std::int64_t{p.cell}) >> 32);
+        std::uint32_t high = 0;
+        if constexpr (sizeof(p.cell) == 8) high = static_cast<std::uint32_t>(static_cast<std::uint64_t>(p.cell) >> 32);
         std::uint32_t w[4] = {
             static_cast<std::uint32_t>(p.cell), p.owner,
             high << 24 | static_cast<std::uint32_t>(p.node) << 8 | static_cast<std::uint32_t>(p.group), p.epoch};

@@ -72,11 +72,11 @@ struct random_words<xsimd::batch<T>> {
                 bits_as<std::uint32_t>((even & low_half) | (odd << 32))};
     }
     static MYRIAD_FUNCTION B whole(const word& a) { return xsimd::to_float(bits_as<std::int32_t>(a)); }
-    static MYRIAD_FUNCTION B half_of(const word& a) { return xsimd::to_float(bits_as<std::int32_t>(a >> 1)); }
-    static MYRIAD_FUNCTION B root(const B& x) { return xsimd::sqrt(x); }
-    static MYRIAD_FUNCTION word high_byte(const xsimd::batch<std::int32_t>& cell) {
-        return bits_as<std::uint32_t>(cell >> 31) & word(0xff000000u);
+    static MYRIAD_FUNCTION B with_sign_of(const B& x, const word& a) {
+        return bits_as<float>(bits_as<std::uint32_t>(x) ^ (a & word(sign_bit)));
     }
+    static MYRIAD_FUNCTION B root(const B& x) { return xsimd::sqrt(x); }
+    static MYRIAD_FUNCTION word high_byte(const xsimd::batch<std::int32_t>&) { return word(0u); }
     static MYRIAD_FUNCTION word of(const xsimd::batch<std::int32_t>& a) { return bits_as<std::uint32_t>(a); }
 };
 
