@@ -217,7 +217,7 @@ TEMPLATE_TEST_CASE("a path has the same bits in a plain lane and in packs, whate
 
 TEST_CASE("blocks of a path are those of Philox at its counters") {
     std::uint32_t words[4] = {1, 2, 3, 4};
-    myriad::detail::philox_of_words<double>(words, 5, 6);
+    myriad::detail::philox_of_words<double>(words, {5, 6});
     const auto expected = myriad::philox_4x32_10({1, 2, 3, 4}, std::uint64_t{6} << 32 | 5);
     for (int i = 0; i < 4; ++i) CHECK(words[i] == expected[i]);
 }

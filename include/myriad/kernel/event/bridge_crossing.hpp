@@ -31,8 +31,9 @@ MYRIAD_CALLED_FUNCTION group_increments<S> bridge_normals(MYRIAD_CALL_ARGUMENT(p
                                                           MYRIAD_CALL_ARGUMENT(int) number) {
     constexpr int groups = 256;  // a group has 8 bits in a counter
     const auto others = static_cast<std::uint32_t>(what) << 24 | static_cast<std::uint32_t>(number / groups);
-    const std::uint32_t key[2] = {over.constants.key[0] ^ 0x6a09e667u, over.constants.key[1] + others};
-    return detail::path_normals<S>(over.from.cell, over.from.part, over.of, key, number % groups);
+    const auto& key = over.constants.keys.of_round[0];
+    return detail::path_normals<S>(over.from.cell, over.from.part, over.of, {key[0] ^ 0x6a09e667u, key[1] + others},
+                                   number % groups);
 }
 
 /// The largest sum of squares of two normal numbers from one block.

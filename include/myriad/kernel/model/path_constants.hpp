@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "myriad/kernel/scalar/philox_keys.hpp"
+
 namespace myriad::detail {
 
 /// The parts into which a cell of a path is divided: the finest times at which a path has a value. Sixteen halvings, as
@@ -16,8 +18,8 @@ inline constexpr std::int64_t most_paths = std::int64_t{1} << 36;
 
 template <class R>
 struct path_constants {
-    R cell, root;          // the length of a cell, and its square root
-    std::uint32_t key[2];  // of the counters
+    R cell, root;  // the length of a cell, and its square root
+    philox_keys keys;
 };
 
 /// The key of a seed: a bijection, so that no two seeds have one (the last function of SplitMix64: Steele, Lea and
@@ -33,7 +35,7 @@ constexpr std::uint64_t key_of_paths(std::uint64_t seed) {
 template <class R>
 path_constants<R> path_constants_of(R cell, std::uint64_t seed) {
     const std::uint64_t key = key_of_paths(seed);
-    return {cell, std::sqrt(cell), {static_cast<std::uint32_t>(key), static_cast<std::uint32_t>(key >> 32)}};
+    return {cell, std::sqrt(cell), philox_keys(static_cast<std::uint32_t>(key), static_cast<std::uint32_t>(key >> 32))};
 }
 
 }  // namespace myriad::detail

@@ -43,8 +43,8 @@ MYRIAD_FUNCTION void draw_cell(const typename path_integers<S>::cell& cell, cons
     using R = real_of<S>;
     using small = typename path_integers<S>::small;
     constexpr R root_of_twelfth = R(0.28867513459481288);
-    w = detail::path_normals<S>(cell, small(0), of, constants.key, group);
-    h = detail::path_normals<S>(cell, small(0), of, constants.key, group + groups_of_increments);
+    w = detail::path_normals<S>(cell, small(0), of, constants.keys, group);
+    h = detail::path_normals<S>(cell, small(0), of, constants.keys, group + groups_of_increments);
     const S of_w(constants.root), of_h(constants.root * root_of_twelfth);
     MYRIAD_UNROLL
     for (int k = 0; k < normals_per_block<R>; ++k) {
@@ -77,9 +77,9 @@ MYRIAD_FUNCTION path_piece<S> piece_up_to(typename path_integers<S>::cell cell, 
     MYRIAD_ROLLED
     while (any(rest != small(0))) {
         group_increments<S> first_w, first_h;
-        group_increments<S> z = detail::path_normals<S>(end.cell, node, of, constants.key, group);
+        group_increments<S> z = detail::path_normals<S>(end.cell, node, of, constants.keys, group);
         group_increments<S> n =
-            detail::path_normals<S>(end.cell, node, of, constants.key, group + groups_of_increments);
+            detail::path_normals<S>(end.cell, node, of, constants.keys, group + groups_of_increments);
         const auto beyond = rest >= small(parts_of_cell / 2);
         MYRIAD_UNROLL
         for (int k = 0; k < count; ++k) {

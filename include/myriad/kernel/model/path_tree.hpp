@@ -35,9 +35,9 @@ MYRIAD_CALLED_FUNCTION increments_with_integrals<S, normals_per_block<real_of<S>
     for (std::int32_t size = parts_of_cell; any(wanted < small(size)); size /= 2) {
         const auto open = wanted < small(size);
         const auto beyond = rest >= small(parts_of_cell / 2);
-        group_increments<S> z = detail::path_normals<S>(cell, node, over.of, over.constants.key, group);
+        group_increments<S> z = detail::path_normals<S>(cell, node, over.of, over.constants.keys, group);
         group_increments<S> n =
-            detail::path_normals<S>(cell, node, over.of, over.constants.key, group + groups_of_increments);
+            detail::path_normals<S>(cell, node, over.of, over.constants.keys, group + groups_of_increments);
         MYRIAD_UNROLL
         for (int k = 0; k < count; ++k) {
             z[k] = S(R(0.25) * root) * z[k];

@@ -77,12 +77,12 @@ struct path_owner {
         set_lane(epoch, i, static_cast<lane>(rest));
     }
     /// Another path of lane i: words that follow from those before, and of which there are 2^64.
-    MYRIAD_FUNCTION void begin_again(int i, const std::uint32_t (&key)[2]) {
+    MYRIAD_FUNCTION void begin_again(int i, const philox_keys& keys) {
         using R = real_of<S>;
         using lane = decltype(get_lane(owner, i));
         const path_owner<R> before = of_lane(i);
         std::uint32_t w[4] = {before.owner, before.epoch, 0, 0};
-        detail::philox_of_words<R>(w, key[0] ^ 0xbb67ae85u, key[1]);
+        detail::philox_of_words<R>(w, {keys.of_round[0][0] ^ 0xbb67ae85u, keys.of_round[0][1]});
         set_lane(owner, i, static_cast<lane>(w[0]));
         set_lane(epoch, i, static_cast<lane>(w[1]));
     }
@@ -108,8 +108,8 @@ using group_increments = vec<S, normals_per_block<real_of<S>>>;
 template <class S>
 MYRIAD_FUNCTION group_increments<S> path_normals(const typename path_integers<S>::cell& cell,
                                                  const typename path_integers<S>::small& node, const path_owner<S>& of,
-                                                 const std::uint32_t (&key)[2], int group) {
-    return normals_of<S>::at({cell, node, group, of.owner, of.epoch}, key[0], key[1]);
+                                                 const philox_keys& keys, int group) {
+    return normals_of<S>::at({cell, node, group, of.owner, of.epoch}, keys);
 }
 
 /// W(place) less W at the beginning of its cell: the bridge over the cell, halved until the place is an end of a half.
@@ -120,14 +120,14 @@ MYRIAD_FUNCTION group_increments<S> within_cell(const path_place<S>& place, cons
     using R = real_of<S>;
     using small = typename path_integers<S>::small;
     constexpr int count = normals_per_block<R>;
-    group_increments<S> left{}, right = detail::path_normals<S>(place.cell, small(0), of, constants.key, group);
+    group_increments<S> left{}, right = detail::path_normals<S>(place.cell, small(0), of, constants.keys, group);
     MYRIAD_UNROLL
     for (int k = 0; k < count; ++k) right[k] = S(constants.root) * right[k];
     R deviation = R(0.5) * constants.root;  // of the middle of a part of a cell
     small rest = place.part, node(1);
     MYRIAD_ROLLED
     while (any(rest != small(0))) {
-        const group_increments<S> z = detail::path_normals<S>(place.cell, node, of, constants.key, group);
+        const group_increments<S> z = detail::path_normals<S>(place.cell, node, of, constants.keys, group);
         const auto beyond = rest >= small(parts_of_cell / 2);
         MYRIAD_UNROLL
         for (int k = 0; k < count; ++k) {
@@ -157,7 +157,7 @@ MYRIAD_CALLED_FUNCTION group_increments<S> increments_between(MYRIAD_CALL_ARGUME
     group_increments<S> sum{};
     MYRIAD_ROLLED
     while (any(cell < end)) {
-        const group_increments<S> z = detail::path_normals<S>(cell, small(0), over.of, over.constants.key, group);
+        const group_increments<S> z = detail::path_normals<S>(cell, small(0), over.of, over.constants.keys, group);
         MYRIAD_UNROLL
         for (int k = 0; k < count; ++k) sum[k] = select(cell < end, sum[k] + S(over.constants.root) * z[k], sum[k]);
         cell = cell + cell_number(1);
@@ -184,7 +184,7 @@ MYRIAD_FUNCTION group_increments<S> increments_of_group(const path_interval<S>& 
     using small = typename path_integers<S>::small;
     group_increments<S> of_group;
     if (whole_cell) {
-        of_group = detail::path_normals<S>(over.from.cell, small(0), over.of, over.constants.key, group);
+        of_group = detail::path_normals<S>(over.from.cell, small(0), over.of, over.constants.keys, group);
         MYRIAD_UNROLL
         for (int k = 0; k < normals_per_block<real_of<S>>; ++k) of_group[k] = S(over.constants.root) * of_group[k];
     } else {

@@ -13,6 +13,7 @@
 #include "myriad/kernel/scalar/exponential.hpp"
 #include "myriad/kernel/scalar/fast_float.hpp"
 #include "myriad/kernel/scalar/math.hpp"
+#include "myriad/kernel/scalar/philox_keys.hpp"
 #include "myriad/kernel/scalar/trigonometry.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
@@ -51,17 +52,15 @@ struct random_words<T> {
 
 /// Philox4x32-10 of the counter w, in its place (model/random.hpp has the source).
 template <class B>
-MYRIAD_FUNCTION void philox_of_words(typename random_words<B>::word (&w)[4], std::uint32_t key_0, std::uint32_t key_1) {
+MYRIAD_FUNCTION void philox_of_words(typename random_words<B>::word (&w)[4], const philox_keys& keys) {
     using words = random_words<B>;
     MYRIAD_UNROLL
-    for (int round = 0; round < 10; ++round) {
+    for (int round = 0; round < philox_keys::rounds; ++round) {
         const auto a = words::multiply(w[0], 0xd2511f53), b = words::multiply(w[2], 0xcd9e8d57);
-        w[0] = b.high ^ w[1] ^ typename words::word(key_0);
-        w[2] = a.high ^ w[3] ^ typename words::word(key_1);
+        w[0] = b.high ^ w[1] ^ typename words::word(keys.of_round[round][0]);
+        w[2] = a.high ^ w[3] ^ typename words::word(keys.of_round[round][1]);
         w[1] = b.low;
         w[3] = a.low;
-        key_0 += 0x9e3779b9;
-        key_1 += 0xbb67ae85;
     }
 }
 
@@ -111,12 +110,12 @@ MYRIAD_FUNCTION void box_muller_of_words(const typename random_words<B>::word& o
 /// The normal numbers of a counter. In double precision u is the midpoint of one of 2^52 equal parts of (0, 1), so that
 /// they are within +-8.6; in single precision a multiple of 2^-31 and 2^-32 more, rounded, which gives +-6.66.
 template <class B>
-MYRIAD_FUNCTION void normal_numbers(typename random_words<B>::word (&w)[4], std::uint32_t key_0, std::uint32_t key_1,
+MYRIAD_FUNCTION void normal_numbers(typename random_words<B>::word (&w)[4], const philox_keys& keys,
                                     B (&z)[normals_per_block<typename arithmetic<B>::real>]) {
     using A = arithmetic<B>;
     using T = typename A::real;
     using words = random_words<B>;
-    detail::philox_of_words<B>(w, key_0, key_1);
+    detail::philox_of_words<B>(w, keys);
     if constexpr (sizeof(T) == sizeof(double)) {
         const B u = words::from_one_to_two(w[0], w[1]) - B(T(1 - 0x1p-53));
         const B angle = A::multiply_add(B(T(2)), words::from_one_to_two(w[2], w[3]), B(T(-3)));
@@ -152,15 +151,14 @@ struct block_place {
 /// The normal numbers of a block, in every lane.
 template <class S>
 struct normals_of {
-    static MYRIAD_FUNCTION vec<S, normals_per_block<S>> at(const block_place<S>& p, std::uint32_t key_0,
-                                                           std::uint32_t key_1) {
+    static MYRIAD_FUNCTION vec<S, normals_per_block<S>> at(const block_place<S>& p, const philox_keys& keys) {
         std::uint32_t high = 0;
         if constexpr (sizeof(p.cell) == 8) high = static_cast<std::uint32_t>(static_cast<std::uint64_t>(p.cell) >> 32);
         std::uint32_t w[4] = {
             static_cast<std::uint32_t>(p.cell), p.owner,
             high << 24 | static_cast<std::uint32_t>(p.node) << 8 | static_cast<std::uint32_t>(p.group), p.epoch};
         S z[normals_per_block<S>];
-        detail::normal_numbers<S>(w, key_0, key_1, z);
+        detail::normal_numbers<S>(w, keys, z);
         vec<S, normals_per_block<S>> all;
         MYRIAD_UNROLL
         for (int k = 0; k < normals_per_block<S>; ++k) all[k] = z[k];

@@ -92,7 +92,7 @@ struct normals_of<pack<T, batches>> {
     using S = pack<T, batches>;
     static constexpr int count = normals_per_block<T>;
 
-    static MYRIAD_FUNCTION vec<S, count> at(const block_place<S>& p, std::uint32_t key_0, std::uint32_t key_1) {
+    static MYRIAD_FUNCTION vec<S, count> at(const block_place<S>& p, const philox_keys& keys) {
         using B = xsimd::batch<T>;
         using words = random_words<B>;
         using word = typename words::word;
@@ -101,7 +101,7 @@ struct normals_of<pack<T, batches>> {
                                        words::high_byte(p.cell.parts[i]) | (words::of(p.node.parts[i]) << 8) |
                                            word(static_cast<typename word::value_type>(p.group)),
                                        words::of(p.epoch.parts[i])};
-                          B z[count]; detail::normal_numbers<B>(w, key_0, key_1, z);
+                          B z[count]; detail::normal_numbers<B>(w, keys, z);
                           for (int k = 0; k < count; ++k) all[k].parts[i] = z[k]);
         return all;
     }

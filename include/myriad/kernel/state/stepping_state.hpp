@@ -62,7 +62,7 @@ struct fixed_state_on_path : fixed_state<S> {
     /// after a time that it has itself decided is independent of what it did before.
     MYRIAD_FUNCTION void begin_again(int i, const path_constants<real_of<S>>& constants) {
         detail::set_place(from, i, path_place<real_of<S>>{0, 0});
-        path.begin_again(i, constants.key);
+        path.begin_again(i, constants.keys);
     }
     /// `interval` of lane i.
     MYRIAD_FUNCTION void set_interval(path_interval<real_of<S>>& to_one, int i,
