@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import myriad_ode as my
+from myriad_ode.codegen.unit_writer import unit_form
 
 n = 24
 oscillators = my.units(n)
@@ -57,6 +58,61 @@ def test_each_unit_has_a_history_of_its_own():
         begin, end = (i + 1) % 4 - 1, (i + 1) % 4 - 0.5
         expected = -(np.cos(end) + np.sin(end) - np.exp(-0.5) * (np.cos(begin) + np.sin(begin))) / 2
         assert run[f"x_{i}_end"][0] == pytest.approx(expected, abs=1e-9)
+
+
+def springs(count=20, **more):
+    """Units with lags of their own, slopes of the past, hooks, events and a history that read it, also of others."""
+    units = my.units(count, **more)
+    u, v = units.states("u v")
+    lag, start, seen = units.parameter("lag"), units.shared("start"), units.accessory("seen")
+    far = my.delayed(np.roll(u, 1), lag)
+    model = my.model({u: v - 0.3 * far, v: 0.2 * my.delayed_slope(u, lag) - u + 0.1 * np.roll(far, 3)},
+                     accessories={seen: 0}, history={u: start + my.sin(my.time)},
+                     events=units.events(u + 0.1 * np.roll(far, 2), name="pass",
+                                         do=lambda i: {
+                                             v[i]: v[i] + 0.1 * far[i], seen[i]: seen[i] + far[(i + 1) % count]}))
+    values = {lag: list(0.4 + 0.03 * np.arange(count)), start: np.linspace(0.1, 0.5, count)}
+    return model, values, {u: np.linspace(0.1, 0.5, count), v: 0}
+
+
+def test_units_with_delays_are_those_of_one_unit_for_gpus():
+    text = late.device_source("tsitouras_5", "double")[0]
+    for written in ("enum unit_delayed { angle_past, n_unit_delayed };", "lag(int, const auto& p)",
+                    "myriad::same_coupling(published_1, 0)", "p.unit_delayed[angle_past]"):
+        assert written in text, written
+    model, _, _ = springs()
+    text = model.device_source("tsitouras_5", "double")[0]
+    for written in ("enum unit_delayed { u_past, u_slope, n_unit_delayed };", "return (unit + 19) % 20;",
+                    "return R(p[lag_0 + unit]);", "p.of(unit_17).unit_delayed[u_past]",
+                    "return number == u_slope;", "lane.of(unit_1).unit_delayed[u_past]",
+                    "history([[maybe_unused]] int unit, "):
+        assert written in text, written
+
+
+@pytest.mark.parametrize("history, equation", [
+    (lambda i: my.cos(my.time + i), lambda x: -my.delayed(x, 1.0)), (None, lambda x: -my.delayed(x, 1 + x * x)),
+    (None, lambda x: -my.delayed(x[0], 1.0) * x), (None, lambda x: -my.delayed(x, 1 + 0.1 * np.arange(20)))])
+def test_units_with_delays_that_are_not_alike_are_written_out_for_gpus(history, equation):
+    x = my.units(20).state("x")
+    model = my.model({x: equation(x)}, history=None if history is None else {x: [history(i) for i in range(20)]})
+    assert model.device_source("tsitouras_5", "double") == model.source()
+
+
+def test_units_with_delays_are_the_same_as_one_unit_and_written_out():
+    for (model, values, start), more in ((springs(8), dict(rtol=1e-8, atol=1e-8)), (springs(8), dict(step=1 / 64))):
+        header = "#undef NDEBUG\n#define NDEBUG\n#include <myriad/coupled_units.hpp>\n"
+        as_units = my.CppModel(header + unit_form(model).source("springs"), "springs",
+                               model.states, model.parameters, model.shared, accessories=model.accessories,
+                               events=[one.name for one in model.events])
+        by_name = {f"{key[i].value[1]}": one for key, several in values.items() for i, one in enumerate(several)}
+        begin = {state.value[1]: one for key, several in start.items()
+                 for state, one in zip(key, np.broadcast_to(several, 8))}
+        runs = [my.solve(model, values, start=start, time=(0, 2), device="cpu", history_steps=4096, **more),
+                my.solve(as_units, by_name, start=begin, time=(0, 2), device="cpu", history_steps=4096, **more)]
+        assert (runs[0].status == "success").all()
+        assert any(runs[0][f"seen_{i}"][0] != 0 for i in range(8))
+        for name in (*model.states, *model.accessories):
+            np.testing.assert_array_equal(runs[0][name], runs[1][name], err_msg=name)
 
 
 # -- Solved ------------------------------------------------------------------------------------------------------------
@@ -180,9 +236,9 @@ def test_a_study_of_units_that_was_killed_goes_on_to_the_same_bits(tmp_path):
 
 # -- Refused -----------------------------------------------------------------------------------------------------------
 
-def test_teams_take_no_units_with_delays():
+def test_teams_take_no_units_whose_delays_change():
     together = my.units(4, threads_per_instance=4)
     z, = together.states("z")
-    with pytest.raises(my.Error, match="threads_per_instance is 4 .* teams of threads take no units with delays from"):
-        my.model({z: -my.delayed(z, 1.0)})
-    assert my.model({z: -z}).device_source("tsitouras_5", "double")
+    with pytest.raises(my.Error, match="threads_per_instance is 4 .* teams of threads take no units whose delays"):
+        my.model({z: -my.delayed(z, 1 + z * z)})
+    assert my.model({z: -my.delayed(z, 1.0)}).device_source("tsitouras_5", "double")

@@ -537,22 +537,41 @@ compare(my.model({{x: v + around @ v, v: force - k * x}}), precision={precision!
 """)
 
 
-def test_units_that_see_each_other_late_are_the_cpus_and_one_thread_integrates_an_instance(run):
+def test_units_that_see_each_other_late_are_the_cpus_in_teams_and_by_one_thread(run):
     run("""
 n, tau, strength = 18, my.parameter("tau"), my.parameter("strength")
-units = my.units(n)
-angle = units.state("angle")
-A = units.full_coupling("A", np.ones((n, n)) / n)
-sine, cosine = A @ my.delayed(np.sin(angle), tau), A @ my.delayed(np.cos(angle), tau)
-late = my.model({angle: 1 + strength * (np.cos(angle) * sine - np.sin(angle) * cosine)})
-solved = lambda device, taus: my.solve(late, {tau: taus, strength: 0.7}, start={angle: 0.2 * np.arange(n)}, time=(0, 6),
-                                       rtol=1e-8, atol=1e-8, device=device)
 taus = np.linspace(0.3, 1.2, 11)
+def solved(device, taus, threads=None):
+    units = my.units(n, threads_per_instance=threads)
+    angle = units.state("angle")
+    A = units.full_coupling("A", np.ones((n, n)) / n)
+    sine, cosine = A @ my.delayed(np.sin(angle), tau), A @ my.delayed(np.cos(angle), tau)
+    late = my.model({angle: 1 + strength * (np.cos(angle) * sine - np.sin(angle) * cosine)})
+    return my.solve(late, {tau: taus, strength: 0.7}, start={angle: 0.2 * np.arange(n)}, time=(0, 6), rtol=1e-8,
+                    atol=1e-8, device=device)
 there, here, some = solved("cuda", taus), solved("cpu", taus), solved("cuda", taus[4:7])
-assert there.report.threads_per_instance == 1 and (there.status == "success").all()
-for state in late.states:
-    assert np.allclose(there[state], here[state], rtol=1e-12, atol=1e-12), state
+alone = solved("cuda", taus, 1)  # written out
+assert there.report.threads_per_instance == 16 and (there.status == "success").all()
+assert alone.report.threads_per_instance == 1
+for i in range(n):
+    state = f"angle_{i}"
+    for other in (here, alone):
+        assert np.allclose(there[state], other[state], rtol=1e-12, atol=1e-12), state
     assert np.array_equal(there[state][4:7], some[state])
+""")
+
+
+def test_teams_integrate_units_with_lags_of_their_own_and_slopes_of_the_past_as_one_thread_does(run):
+    run("n, threads = 20, 8" + TEAMS + """
+late, seen = units.parameter("late"), units.accessory("seen")
+far = my.delayed(np.roll(x, 1), late)
+springs = my.model(
+    {x: v - 0.3 * far, v: 0.2 * my.delayed_slope(x, late) - x + 0.1 * np.roll(far, 3)}, accessories={seen: 0},
+    history={x: w + my.sin(my.time)}, events=units.events(x + 0.1 * np.roll(far, 2), name="pass", do=lambda i: {
+        v[i]: v[i] + 0.1 * far[i], seen[i]: seen[i] + far[(i + 1) % n]}))
+lags = {late: [np.linspace(0.4, 0.9, 5) + 0.03 * i for i in range(n)], w: sets[w]}
+team = compare(springs, lags, history_steps=4096)
+assert (team.status == "success").all() and any(team[name].any() for name in springs.accessories)
 """)
 
 

@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from .._core import factor_entries
-from ..models.delays import first_of_lag
+from ..models.delays import Delay, first_of_lag
 from ..models.mass_matrix import left_sides, mass_entries
 from ..models.noise import equation_texts
 from ..symbolic.node import integer, real, walk
@@ -183,12 +183,23 @@ class Writer:
         value, R = body.text(root), self.names.R
         return value if _depends_on_instance(root) or value.startswith(R + "(") else f"{R}({value})"
 
+    def other_units(self, nodes: Iterable[Node]) -> list[str]:
+        """Statements before those of some expressions, with the numbers of the other units that are named."""
+        return []
+
     # The past
 
     def past(self) -> list[list[str]]:
         """What a model has for its delayed values: their states, their lags, and what was before the begin."""
-        n, delays, history = self.names, self.model.delays, self.model.history
-        of_state = {one.symbol: history.get(one.symbol.value[1].state) for one in delays}
+        delays, history = self.model.delays, self.model.history
+        given = [(one.name, history[state]) for one in delays if (state := one.symbol.value[1].state) in history]
+        return self.past_of(delays, given, "", "p" if all(one.is_constant for one in delays) else "typ")
+
+    def past_of(self, delays: Sequence[Delay], given: Sequence[tuple[str, Node]], before: str,
+                of_lag: str) -> list[list[str]]:
+        """The same of some delayed values, with the histories that are `given` by name. `before` and `of_lag` say what
+        functions have for arguments: `before` in front of the number, as in `of_past`."""
+        n = self.names
         which = f"int {n.number}" if len({one.state for one in delays}) > 1 else "int"
         blocks = [["/// The state that a delayed value is of.",
                    f"MYRIAD_FUNCTION static int delayed_state({which}) {{",
@@ -204,12 +215,9 @@ class Writer:
         first = first_of_lag(delays)
         if len({*first}) < len(delays):
             blocks.append(self.same_lag({one.name: delays[j].name for one, j in zip(delays, first)}))
-        is_constant = all(one.is_constant for one in delays)
-        blocks.append(self.of_past("/// How long ago it was.", "lag", [(one.name, one.lag) for one in delays],
-                                   "p" if is_constant else "typ"))
-        given = [(one.name, before) for one in delays if (before := of_state[one.symbol]) is not None]
+        blocks.append(self.of_past("/// How long ago it was.", "lag", [(one.name, one.lag) for one in delays], of_lag))
         if given:
-            blocks.append(self.of_past("/// Its value before the begin.", "history", given, "tp"))
+            blocks.append(self.of_past("/// Its value before the begin.", "history", given, before + "tp"))
         if 0 < len(given) < len(delays):
             named = wrap(f"return {' || '.join(f'{n.number} == {name}' for name, _ in given)};", 4)
             blocks.append(["/// Others had their initial value.",
@@ -242,17 +250,19 @@ class Writer:
         return [*lines, *last]
 
     def of_past(self, what: str, name: str, values: Sequence[tuple[str, Node]], wanted: str) -> list[str]:
-        """A function of the number of a delayed value and of some of the time t, the state y and the inputs p."""
+        """A function of the number of a delayed value and of some of the time t, the state y and the inputs p; of the
+        unit u too, which comes first."""
         n, cases = self.names, []
         for delayed, value in values:
             body = Body([value], n, self.in_function, scalar=False)
-            cases.append((delayed, [*body.lines, f"return {self.real_text(body, value)};"]))
+            cases.append((delayed, [*self.other_units([value]), *body.lines, f"return {self.real_text(body, value)};"]))
         lines, kinds = self.by_delay(cases), _kinds_in([value for _, value in values])
         is_read = any(re.search(rf"\b{n.number}\b", line) for line in lines)
         known = {"t": f"const {n.R}&" + (f" {n.t}" if "built-in" in kinds else ""),
                  "y": f"const myriad::vec<{n.R}, n_state>&" + (f" {n.y}" if "state" in kinds else ""),
                  "p": "const auto&" + (f" {n.p}" if kinds - {"built-in", "state"} else "")}
-        arguments = ", ".join([f"int {n.number}" if is_read else "int", *(known[one] for one in wanted)])
+        arguments = ", ".join(["[[maybe_unused]] int unit"] * ("u" in wanted) +
+                              [f"int {n.number}" if is_read else "int"] + [known[one] for one in wanted if one != "u"])
         return [what, f"template <class {n.R}>",
                 *wrap(f"MYRIAD_FUNCTION static {n.R} {name}({arguments}) {{", 0),
                 *(wrapped for line in lines for wrapped in wrap(line, 4)), "}"]

@@ -6,9 +6,12 @@ from __future__ import annotations
 import copy
 from typing import TYPE_CHECKING, Any
 
+from ..models.delays import Delay
 from ..models.units import CouplingTable, of_units
+from ..symbolic.delays import Past
 from ..symbolic.expression import make
 from ..symbolic.node import Node, symbols_of, walk
+from ..symbolic.symbols import free_name
 from .cpp_body import Body, Names, branches, wrap
 from .cpp_writer import Writer
 
@@ -22,7 +25,7 @@ if TYPE_CHECKING:
 
 # What a unit has by these names, beside those that begin like its own variables.
 _members = {"unit", "publish", "publication", "n_publication", "couplings", "diffusion", "observe", "events",
-            "summaries", "threads_per_instance", "wanted"}
+            "summaries", "threads_per_instance", "wanted", "delayed_unit"}
 
 
 class _NotAlike(Exception):
@@ -31,7 +34,8 @@ class _NotAlike(Exception):
 
 class UnitForm(Writer):
     """Units that are alike, as one of them. Its symbols of components of units are ("of_unit", (kind, name, distance)),
-    those of sums of a coupling ("sum", (table, what is summed, distance of the row))."""
+    those of sums of a coupling ("sum", (table, what is summed, distance of the row)). A delayed value belongs to the
+    unit whose parameters its lag reads, or else to that of its state."""
 
     def __init__(self, model: RecordedModel, units: Units) -> None:
         self.model, self.units = model, units
@@ -50,9 +54,12 @@ class UnitForm(Writer):
         for kind in ("event_count", "observed"):
             if len(self.of_unit[kind]) * units.count != len(of_kind[kind]):
                 raise _NotAlike
+        #: the delayed values of a unit: their names by what they are, seen from it
+        self.delayed_of_unit: dict[Past, str] = {}
         super().__init__(model, Names(model, [*self.groups, "unit"]))
         self._read_functions()
         self._read_hooks()
+        self._read_past()
 
     def _read_functions(self) -> None:
         model, n = self.model, self.units.count
@@ -100,6 +107,40 @@ class UnitForm(Writer):
             if any(one.keys() != done[0].keys() or any(one[t] is not done[0][t] for t in one) for one in done):
                 raise _NotAlike
             self.at_events.append(self._without_sums(sorted(done[0].items(), key=lambda one: str(one[0].value))))
+
+    def _read_past(self) -> None:
+        """The delayed values of a unit, and what they were before the begin."""
+        n, history = self.units.count, {state.value[1]: value for state, value in self.model.history.items()}
+        if len(self.delayed_of_unit) * n != len(self.model.delays):
+            raise _NotAlike  # some are read of some units alone
+        self.of_unit["delayed"] = list(self.delayed_of_unit.values())
+        self.before: list[tuple[str, Node]] = []
+        for past, name in self.delayed_of_unit.items():
+            _, base, distance = past.state.value[1]
+            of_each = [history.get(f"{base}_{(i + distance) % n}") for i in range(n)]
+            given = [value for value in of_each if value is not None]
+            if len(given) not in (0, n):
+                raise _NotAlike
+            if given:
+                self.before.append((name, self._alike(given)))
+
+    def _delayed(self, past: Past, unit: int) -> Node:
+        """A delayed value as one of the unit that it belongs to."""
+        n = self.units.count
+        if not past.has_constant_lag:
+            raise _NotAlike
+        numbers = {number for s in symbols_of([past.lag]) if (number := self._number(*s.value)) is not None}
+        of_state = self._number(*past.state.value)
+        if of_state is None or len(numbers) > 1:
+            raise _NotAlike
+        owner = numbers.pop() if numbers else of_state
+        own = Past(self._shift(past.state, owner), self._shift(past.lag, owner), past.is_slope)
+        if own not in self.delayed_of_unit:
+            stem = f"{own.state.value[1][1]}_{'slope' if own.is_slope else 'past'}"
+            taken = [*self.model.component_names, *self.groups, *self.delayed_of_unit.values()]
+            self.delayed_of_unit[own] = free_name(stem, taken)
+            self.names.taken.add(self.delayed_of_unit[own])
+        return make("symbol", value=("of_unit", ("delayed", self.delayed_of_unit[own], (owner - unit) % n)))
 
     def _of_each(self, assignments: Assignments) -> tuple[Assignments, Assignments]:
         """The assignments of the system and those of each unit. All take effect together, while C++ calls the hook for
@@ -178,6 +219,8 @@ class UnitForm(Writer):
             return make("symbol", value=("sum", (table, what, (row - unit) % n)))
         if node.op == "symbol":
             kind, name = node.value
+            if kind == "delayed":
+                return self._delayed(name, unit)
             number = self._number(kind, name)
             if number is None:
                 return node
@@ -210,7 +253,7 @@ class UnitForm(Writer):
                                    ("events", "n_unit_event", self.event_functions),
                                    ("observe", "n_unit_observed", self.quantities)):
             blocks += [self._function(name, count, roots)] if roots else []
-        blocks += self._hook_functions()
+        blocks += [*self._past_functions(), *self._hook_functions()]
         out = ["// SPDX-License-Identifier: MIT", "// Written by Myriad's Python package from traced units.", "",
                f"struct {struct}_unit {{", *("    " + line for one in lines for line in wrap(one, 0))]
         for block in blocks:
@@ -224,14 +267,15 @@ class UnitForm(Writer):
         of_couplings = {name for table, _ in self.couplings for name in (table.name, f"{table.name}_last")}
         for kind, several in (("state", self.of_unit["state"]), ("accessory", self.of_unit["accessory"]),
                               ("integer_accessory", self.of_unit["integer_accessory"]),
-                              ("event", self.of_unit["event_count"]), ("observed", self.of_unit["observed"])):
+                              ("event", self.of_unit["event_count"]), ("observed", self.of_unit["observed"]),
+                              ("delayed", self.of_unit["delayed"])):
             if several:
                 yield f"enum unit_{kind} {{ {', '.join(several)}, n_unit_{kind} }};"
         for kind, several in model.enumerations():
             if kind in ("accessory", "integer_accessory"):
                 several = [name for name in several if self._number(kind, name) is None]
             own = [last.get(c, c) for c in several if c not in of_couplings]
-            if own and kind not in ("state", "event", "observed"):
+            if own and kind not in ("state", "event", "observed", "delayed"):
                 yield f"enum {kind} {{ {', '.join(own)}, n_{kind} }};"
         if self.published:
             yield f"enum publication {{ {', '.join(f'published_{i}' for i in self.published.values())}, " \
@@ -249,7 +293,7 @@ class UnitForm(Writer):
                 arguments += [] if table.bandwidth is None else [str(table.bandwidth)]
             yield f"myriad::{form}_coupling({', '.join(arguments)})"
 
-    def _distances(self, nodes: Iterable[Node]) -> list[str]:
+    def other_units(self, nodes: Iterable[Node]) -> list[str]:
         """The numbers of the other units that are named."""
         distances = sorted({s.value[1][2] for s in symbols_of(nodes) if s.value[0] in ("of_unit", "sum")} - {0})
         return [f"const int unit_{d} = (unit + {d}) % {self.units.count};" for d in distances]
@@ -304,9 +348,29 @@ class UnitForm(Writer):
         out += wrap(f"MYRIAD_FUNCTION static myriad::vec<{names.R}, {count}> {name}([[maybe_unused]] int unit, "
                      f"[[maybe_unused]] auto {names.t}, [[maybe_unused]] const auto& {names.y}, "
                      f"[[maybe_unused]] const auto& {names.p}) {{", 0)
-        for line in [*self._distances(roots), *body.lines]:
+        for line in [*self.other_units(roots), *body.lines]:
             out += wrap(line, 4)
         return [*out, *wrap(f"return myriad::vec<{names.R}, {count}>{{{', '.join(values)}}};", 4), "}"]
+
+    def _past_functions(self) -> Iterable[list[str]]:
+        """The functions of delayed values, if there are any."""
+        if not self.delayed_of_unit:
+            return
+        n, number = self.units.count, self.names.number
+        delays = [Delay(name, None, past.state.value[1][1], past.lag, True, past.is_slope)
+                  for past, name in self.delayed_of_unit.items()]
+        of_system = not any(s.value[0] == "of_unit" for s in symbols_of([one.lag for one in delays]))
+        yield from self.past_of(delays, self.before, "u", "p" if of_system else "up")
+        distances = [(name, past.state.value[1][2]) for past, name in self.delayed_of_unit.items()]
+        if any(distance for _, distance in distances):
+            lines = self.by_delay([(name, [f"return (unit + {distance}) % {n};" if distance else "return unit;"])
+                                   for name, distance in distances])
+            yield ["/// The unit whose state it is of.",
+                   f"MYRIAD_FUNCTION static int delayed_unit(int unit, [[maybe_unused]] int {number}) {{",
+                   *self.block(lines), "}"]
+
+    def real_text(self, body: Body, root: Node) -> str:
+        return f"{self.names.R}({body.text(root)})"
 
     def _hook_functions(self) -> Iterable[list[str]]:
         """The hooks that there are."""
@@ -341,7 +405,7 @@ class UnitForm(Writer):
                 *self.block(lines), *last, "}"]
 
     def _statements_of_event(self, do: Assignments) -> list[str]:
-        return [*self._distances([node for pair in do for node in pair]), *self.done(do)]
+        return [*self.other_units([node for pair in do for node in pair]), *self.done(do)]
 
     def _statements_of_each(self, system: Assignments, own: Assignments) -> list[str]:
         """The statements of a hook that is called for one unit after the other. What belongs to the system is done in
@@ -358,7 +422,7 @@ class UnitForm(Writer):
             lines += ["if (unit == 0) {", *("    " + line for line in [*statements, *wanted]), "}"]
         if own:
             statements, _ = self.statements(own, scalar=True)
-            lines += [*self._distances([value for _, value in own]), *statements]
+            lines += [*self.other_units([value for _, value in own]), *statements]
         return [*lines, *result]
 
     def title(self, target: Node) -> str:
@@ -368,7 +432,7 @@ class UnitForm(Writer):
 def unit_form(model: RecordedModel) -> UnitForm | None:
     """The model as that of one unit; None if its units are not alike, or have what units do not."""
     units = model.units_of_states
-    if units is None or units.count < 2 or model.delays or model.triggers or model.queue:
+    if units is None or units.count < 2 or model.triggers or model.queue:
         return None
     if model.mass_matrix is not None or model.noise is not None and model.noise.processes:
         return None

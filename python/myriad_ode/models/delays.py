@@ -84,9 +84,9 @@ def check(model: Any) -> None:
         raise Error(f"a model with a mass matrix has no delays yet{line}: divide its "
                     "equations by what stands before their derivatives")
     units = model.units_of_states
-    if units is not None and (units.threads_per_instance or 1) > 1:
+    if units is not None and (units.threads_per_instance or 1) > 1 and not all(d.is_constant for d in model.delays):
         raise Error(f"threads_per_instance is {units.threads_per_instance}{line}, and teams of threads take no units "
-                    "with delays from Python yet: leave it out, and one thread integrates an instance")
+                    "whose delays depend on time or state: leave it out, and one thread integrates an instance")
     _check_lags(model)
 
 
