@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <map>
 #include <utility>
 
 #include "myriad/kernel/scalar/pack.hpp"
@@ -23,7 +24,8 @@ using myriad::detail::path_place;
 
 template <class R>
 path_interval<R> interval(path_place<R> from, path_place<R> to, std::int64_t instance, R cell = 1) {
-    path_interval<R> over{from, to, {}, path_constants_of(cell, 1)};
+    static std::map<R, myriad::detail::path_constants<R>> of_cell;
+    path_interval<R> over{from, to, {}, &of_cell.try_emplace(cell, path_constants_of(cell, 1)).first->second};
     over.of.set(0, instance, 0);
     return over;
 }
@@ -132,7 +134,8 @@ TEMPLATE_TEST_CASE("integrals have the same bits in a plain lane and in packs, w
     std::int64_t different = 0;
     for (int kind = 0; kind < 3; ++kind) {  // all over one cell, some over more or over parts, all over parts
         path_interval<S> over{};
-        over.constants = path_constants_of(R(0.25), 1);
+        const auto constants = path_constants_of(R(0.25), 1);
+        over.constants = &constants;
         path_interval<R> alone[lanes];
         for (int i = 0; i < lanes; ++i) {
             const bool parts = kind == 2 || (kind == 1 && i % 3 == 1);

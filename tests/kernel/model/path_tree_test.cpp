@@ -28,7 +28,8 @@ tree_interval<R> node(std::int32_t from, std::int32_t length, bool is_node = tru
     const auto place = [](std::int32_t part) {
         return myriad::detail::path_place<R>{number(3 + part / parts_of_cell), part % parts_of_cell};
     };
-    tree_interval<R> over{{place(from), place(to), {}, path_constants_of(R(0.5), 7)}, is_node ? std::abs(length) : 0};
+    static const auto constants = path_constants_of(R(0.5), 7);
+    tree_interval<R> over{{place(from), place(to), {}, &constants}, is_node ? std::abs(length) : 0};
     over.of.set(0, 11, 0);
     return over;
 }
@@ -78,7 +79,8 @@ TEMPLATE_TEST_CASE("a lane has the bits of a plain number whatever its neighbour
     using R = TestType;
     using S = myriad::pack<R, 2>;
     tree_interval<S> all;
-    all.constants = path_constants_of(R(0.5), 7);
+    const auto constants = path_constants_of(R(0.5), 7);
+    all.constants = &constants;
     const auto one_of = [](int i) {
         if (i % 3 == 2) return node<R>(1000 * i, 777, false);
         return i % 3 == 0 ? node<R>(0, parts_of_cell) : node<R>(4096 * (i % 4 + 1), 1024);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <map>
 #include <type_traits>
 #include <vector>
 
@@ -28,7 +29,8 @@ using myriad::detail::set_lane;
 template <class R>
 path_interval<R> interval(path_place<R> from, path_place<R> to, std::int64_t instance, std::int32_t epoch = 0,
                           std::uint64_t seed = 1) {
-    path_interval<R> over{from, to, {}, path_constants_of(R(1), seed)};
+    static std::map<std::uint64_t, myriad::detail::path_constants<R>> of_seed;
+    path_interval<R> over{from, to, {}, &of_seed.try_emplace(seed, path_constants_of(R(1), seed)).first->second};
     over.of.set(0, instance, epoch);
     return over;
 }
@@ -190,7 +192,8 @@ TEMPLATE_TEST_CASE("a path has the same bits in a plain lane and in packs, whate
     std::int64_t different = 0;
     for (int kind = 0; kind < 3; ++kind) {  // all over one cell, some over more or over parts, all over parts
         path_interval<S> over{};
-        over.constants = path_constants_of(R(0.25), 1);
+        const auto constants = path_constants_of(R(0.25), 1);
+        over.constants = &constants;
         path_interval<R> alone[lanes];
         for (int i = 0; i < lanes; ++i) {
             const bool parts = kind == 2 || (kind == 1 && i % 3 == 1), many = kind == 1 && i % 3 == 2;

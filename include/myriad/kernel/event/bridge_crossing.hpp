@@ -31,7 +31,7 @@ MYRIAD_CALLED_FUNCTION group_increments<S> bridge_normals(MYRIAD_CALL_ARGUMENT(p
                                                           MYRIAD_CALL_ARGUMENT(int) number) {
     constexpr int groups = 256;  // a group has 8 bits in a counter
     const auto others = static_cast<std::uint32_t>(what) << 24 | static_cast<std::uint32_t>(number / groups);
-    const auto& key = over.constants.keys.of_round[0];
+    const auto& key = over.constants->keys.of_round[0];
     return detail::path_normals<S>(over.from.cell, over.from.part, over.of, {key[0] ^ 0x6a09e667u, key[1] + others},
                                    number % groups);
 }

@@ -22,10 +22,7 @@ struct free_run {
     static constexpr auto n = n_state<Model>;
     static constexpr bool on_path = stochastic_method<Method>;
     struct nothing {};
-    struct place_on_path {
-        path_place<S> from;
-    };
-    using path_of_run = std::conditional_t<on_path, place_on_path, nothing>;
+    using cell_number = std::conditional_t<on_path, typename path_integers<S>::cell, nothing>;
 
     const kernel_arguments<Model, R>& args;
     integration_state<Model, Method, S>& s;
@@ -48,8 +45,11 @@ struct free_run {
         vec<S, n> y = s.data.y;
         count done = s.steps.done;
         iteration_number taken = 0, block = longest_block;
-        path_of_run path{};
-        if constexpr (on_path) path.from = s.steps.from;
+        cell_number cell{};
+        if constexpr (on_path) {
+            if (!steps_are_cells()) return status::success;
+            cell = s.steps.from.cell;
+        }
         while (taken < run) {
             if constexpr (!is_pack<S>) {  // which has no other check before the end
                 if (MYRIAD_UNLIKELY(taken % asks_every == 0) &&
@@ -60,16 +60,16 @@ struct free_run {
             }
             block = block < run - taken ? block : run - taken;
             vec<S, n> now = y;
-            path_of_run ahead = path;
+            cell_number ahead = cell;
             MYRIAD_UNROLL_BY(on_path ? 1 : 4)
             for (iteration_number i = 0; i < block; ++i) {
                 trial_step<Method, S, n> trial;
                 const S t = fma(S(done + count(static_cast<lane_of<count>>(i))), step, base);
                 trial.slope_start() = detail::evaluate_rhs<Model>(t, now, p);
                 if constexpr (on_path) {
-                    const path_place<S> from = ahead.from;
-                    ahead.from = detail::moved(from, s.steps.per_step);
-                    trial.noise = {from, ahead.from, s.steps.path, args.noise};
+                    const path_place<S> from = beginning_of(ahead), to = beginning_of(ahead + cell_number(1));
+                    ahead = to.cell;
+                    trial.noise = {from, to, s.steps.path, &args.noise};
                 }
                 detail::take_trial_step<Method, Model>(t, step, t + step, now, p, trial);
                 now = trial.y;
@@ -80,12 +80,12 @@ struct free_run {
                 continue;
             }
             y = now;
-            path = ahead;
+            cell = ahead;
             done = done + count(static_cast<lane_of<count>>(block));
             taken += block;
         }
         s.data.y = y;
-        if constexpr (on_path) s.steps.from = path.from;
+        if constexpr (on_path) s.steps.from.cell = cell;
         fixed_stepping<Model, Method, S>{args, s}.count_steps(done - s.steps.done);
         s.iteration += taken;
         return ending;
@@ -131,6 +131,18 @@ struct free_run {
 
 private:
     static constexpr iteration_number worthwhile = 4, asks_every = 1 << 14;
+
+    /// Whether each step is a cell of the path, forwards, as it usually is. Steps that are not take most of their time
+    /// for the bridge, or for many cells.
+    MYRIAD_FUNCTION bool steps_are_cells() const requires on_path {
+        using small = typename path_integers<S>::small;
+        const mask_of<S> cells((s.steps.from.part == small(0)) & (s.steps.per_step.part == small(0)) &
+                               (s.steps.per_step.cell == cell_number(1)));
+        return !any(s.running() & !cells);
+    }
+    static MYRIAD_FUNCTION path_place<S> beginning_of(const cell_number& cell) requires on_path {
+        return {cell, typename path_integers<S>::small(0)};
+    }
 
     /// How many steps all lanes may take: not the last one of any, and not the last one before the check is due.
     MYRIAD_FUNCTION iteration_number steps_ahead() const {

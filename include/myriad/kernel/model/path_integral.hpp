@@ -107,8 +107,8 @@ MYRIAD_CALLED_FUNCTION increments_with_integrals<S, normals_per_block<real_of<S>
     MYRIAD_CALL_ARGUMENT(path_interval<S>) over, MYRIAD_CALL_ARGUMENT(int) group) {
     using R = real_of<S>;
     const auto first = select(over.to.cell < over.from.cell, over.to.cell, over.from.cell);
-    const path_piece<S> begun = detail::piece_up_to<S>(first, over.from, over.of, over.constants, group);
-    const path_piece<S> ended = detail::piece_up_to<S>(first, over.to, over.of, over.constants, group);
+    const path_piece<S> begun = detail::piece_up_to<S>(first, over.from, over.of, *over.constants, group);
+    const path_piece<S> ended = detail::piece_up_to<S>(first, over.to, over.of, *over.constants, group);
     increments_with_integrals<S, normals_per_block<R>> found;
     MYRIAD_UNROLL
     for (int k = 0; k < normals_per_block<R>; ++k) {
@@ -127,10 +127,10 @@ MYRIAD_FUNCTION increments_with_integrals<S, normals_per_block<real_of<S>>> inte
     increments_with_integrals<S, per_group> of_group;
     if (whole_cell) {
         group_increments<S> h;
-        detail::draw_cell<S>(over.from.cell, over.of, over.constants, group, of_group.increment, h);
+        detail::draw_cell<S>(over.from.cell, over.of, *over.constants, group, of_group.increment, h);
         MYRIAD_UNROLL
         for (int k = 0; k < per_group; ++k)
-            of_group.integral[k] = S(over.constants.cell) * fma(S(R(0.5)), of_group.increment[k], h[k]);
+            of_group.integral[k] = S(over.constants->cell) * fma(S(R(0.5)), of_group.increment[k], h[k]);
     } else {
         of_group = detail::integrals_between<S>(over, group);
     }

@@ -28,16 +28,16 @@ MYRIAD_CALLED_FUNCTION increments_with_integrals<S, normals_per_block<real_of<S>
     const small wanted = select(over.length == small(0), small(parts_of_cell), over.length);
     small rest = select(backwards, over.to.part, over.from.part), node(1);
     group_increments<S> w, h;
-    detail::draw_cell<S>(cell, over.of, over.constants, group, w, h);
-    S length = S(over.constants.cell);
-    R root = over.constants.root;
+    detail::draw_cell<S>(cell, over.of, *over.constants, group, w, h);
+    S length = S(over.constants->cell);
+    R root = over.constants->root;
     MYRIAD_ROLLED
     for (std::int32_t size = parts_of_cell; any(wanted < small(size)); size /= 2) {
         const auto open = wanted < small(size);
         const auto beyond = rest >= small(parts_of_cell / 2);
-        group_increments<S> z = detail::path_normals<S>(cell, node, over.of, over.constants.keys, group);
+        group_increments<S> z = detail::path_normals<S>(cell, node, over.of, over.constants->keys, group);
         group_increments<S> n =
-            detail::path_normals<S>(cell, node, over.of, over.constants.keys, group + groups_of_increments);
+            detail::path_normals<S>(cell, node, over.of, over.constants->keys, group + groups_of_increments);
         MYRIAD_UNROLL
         for (int k = 0; k < count; ++k) {
             z[k] = S(R(0.25) * root) * z[k];

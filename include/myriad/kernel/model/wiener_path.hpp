@@ -96,7 +96,7 @@ template <class S>
 struct path_interval {
     path_place<S> from, to;
     path_owner<S> of;
-    path_constants<real_of<S>> constants;
+    const path_constants<real_of<S>>* constants;
 };
 
 /// Increments of the processes of one group: as many as a block has normal numbers.
@@ -157,14 +157,14 @@ MYRIAD_CALLED_FUNCTION group_increments<S> increments_between(MYRIAD_CALL_ARGUME
     group_increments<S> sum{};
     MYRIAD_ROLLED
     while (any(cell < end)) {
-        const group_increments<S> z = detail::path_normals<S>(cell, small(0), over.of, over.constants.keys, group);
+        const group_increments<S> z = detail::path_normals<S>(cell, small(0), over.of, over.constants->keys, group);
         MYRIAD_UNROLL
-        for (int k = 0; k < count; ++k) sum[k] = select(cell < end, sum[k] + S(over.constants.root) * z[k], sum[k]);
+        for (int k = 0; k < count; ++k) sum[k] = select(cell < end, sum[k] + S(over.constants->root) * z[k], sum[k]);
         cell = cell + cell_number(1);
     }
     group_increments<S> begun{}, ended{};
-    if (any(over.from.part != small(0))) begun = detail::within_cell<S>(over.from, over.of, over.constants, group);
-    if (any(over.to.part != small(0))) ended = detail::within_cell<S>(over.to, over.of, over.constants, group);
+    if (any(over.from.part != small(0))) begun = detail::within_cell<S>(over.from, over.of, *over.constants, group);
+    if (any(over.to.part != small(0))) ended = detail::within_cell<S>(over.to, over.of, *over.constants, group);
     MYRIAD_UNROLL
     for (int k = 0; k < count; ++k) sum[k] = select(backwards, -sum[k], sum[k]) + (ended[k] - begun[k]);
     return sum;
@@ -184,9 +184,9 @@ MYRIAD_FUNCTION group_increments<S> increments_of_group(const path_interval<S>& 
     using small = typename path_integers<S>::small;
     group_increments<S> of_group;
     if (whole_cell) {
-        of_group = detail::path_normals<S>(over.from.cell, small(0), over.of, over.constants.keys, group);
+        of_group = detail::path_normals<S>(over.from.cell, small(0), over.of, over.constants->keys, group);
         MYRIAD_UNROLL
-        for (int k = 0; k < normals_per_block<real_of<S>>; ++k) of_group[k] = S(over.constants.root) * of_group[k];
+        for (int k = 0; k < normals_per_block<real_of<S>>; ++k) of_group[k] = S(over.constants->root) * of_group[k];
     } else {
         of_group = detail::increments_between<S>(over, group);
     }

@@ -67,10 +67,10 @@ struct fixed_state_on_path : fixed_state<S> {
     /// `interval` of lane i.
     MYRIAD_FUNCTION void set_interval(path_interval<real_of<S>>& to_one, int i,
                                       const path_constants<real_of<S>>& constants) const {
-        to_one = {detail::get_place(from, i), detail::get_place(to, i), path.of_lane(i), constants};
+        to_one = {detail::get_place(from, i), detail::get_place(to, i), path.of_lane(i), &constants};
     }
     MYRIAD_FUNCTION path_interval<S> interval(const path_constants<real_of<S>>& constants) const {
-        return {from, to, path, constants};
+        return {from, to, path, &constants};
     }
 };
 
@@ -99,7 +99,7 @@ struct adaptive_state_on_path {
         base = step = end = S(real_of<S>(0));
     }
     MYRIAD_FUNCTION tree_interval<S> interval(const path_constants<real_of<S>>& constants) const {
-        return {{from, to, path, constants}, node};
+        return {{from, to, path, &constants}, node};
     }
 };
 
