@@ -102,7 +102,7 @@ std::optional<compiler> find_compiler(const std::string& zig) {
 std::string compiler::name() const { return file_name(command.front()); }
 
 std::vector<std::string> compiler::kernel_flags(openmp::instruction_set set) const {
-    std::vector<std::string> flags = words_of("-std=c++20 -fPIC " MYRIAD_KERNEL_FLAGS);
+    std::vector<std::string> flags = words_of("-std=c++20 -fPIC -DNDEBUG " MYRIAD_KERNEL_FLAGS);
     for (const std::string& flag : words_of(kind == "g++" ? MYRIAD_KERNEL_FLAGS_GNU : MYRIAD_KERNEL_FLAGS_CLANG))
         flags.push_back(flag);
     // Spelt out, so that machines that share a cache agree on its meaning.
