@@ -222,3 +222,13 @@ def test_archives_that_unpack_without_bound_or_have_no_manifest_are_refused(tmp_
     only_a_model = archive(tmp_path / "model.omex", {"decay.xml": MODEL})
     with pytest.raises(my.Error, match="its manifest names no document of SED-ML: unpack it, and read its model"):
         my.read_sedml(only_a_model)
+
+
+def test_a_repeated_task_keeps_what_it_sets_beside_other_initial_values(folder):
+    course = courses(folder, sedml(model(), tasks=TASK + repeated(FEW.replace('"s"', '"r"'), set_to(S))))["many"]
+    own = course.solve()
+    np.testing.assert_array_equal(course.solve(start={})["S_sample"], own["S_sample"])
+    replaced = course.solve(start={"S": 2.0})["S_sample"]
+    np.testing.assert_array_equal(replaced, np.broadcast_to(own["S_sample"][1], replaced.shape))
+    with pytest.raises(my.Error, match="start is 2: give a dict by name"):
+        course.solve(start=2)

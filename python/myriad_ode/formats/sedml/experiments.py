@@ -13,6 +13,7 @@ import numpy as np
 
 from ...base.errors import Error
 from ...solving.solve import solve
+from ...sweeps.inputs import by_name
 from ..cellml.model import read_cellml
 from ..sbml.model import SbmlModel, read_sbml
 from .archive import Files, xml_of
@@ -38,13 +39,15 @@ class TimeCourse:
 
     def solve(self, sweep: Any = None, **options: Any) -> Run:
         """Integrates the model and samples all states at the times. Without a sweep, the instances are those of a
-        repeated task, or one with the model's own values. Arguments are those of `my.solve`."""
+        repeated task, or one with the model's own values. Arguments are those of `my.solve`; initial values in `start`
+        stand beside those that the task sets, or in their place."""
         if sweep is None:
             aliases = _aliases(self.model)
             changed = {aliases.get(name, name): values for name, values in self.changes.items()}
             sweep = {name: values for name, values in changed.items() if name in self.model.parameters}
             starts = {name: values for name, values in changed.items() if name not in sweep}
-            options = {"start": starts, **options} if starts else options
+            given = by_name(options.get("start"), "start", "start={\"S1\": 1.0}")
+            options["start"] = {**starts, **{getattr(key, "name", key): values for key, values in given.items()}}
         times = {"time": (self.begin, float(self.times[-1])), "samples": self.times}
         return solve(self.model, sweep or None, **{**times, **options})
 
