@@ -45,7 +45,7 @@
 // case: adaptive_steps_without_an_estimate
 // expect: this method has no error estimate for adaptive steps: use adaptive<sra1>
 // case: events_within_adaptive_steps
-// expect: events and extrema of a model with a diffusion are found in fixed steps alone yet
+// expect: events and extrema of a model with a diffusion are found only in fixed steps
 // case: adaptive_steps_with_a_controller
 // expect: steps of stochastic equations are halved and doubled, by no controller
 // SPDX-License-Identifier: MIT

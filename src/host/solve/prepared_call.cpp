@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "myriad/host/checks/data_check.hpp"
+#include "myriad/host/checks/path_check.hpp"
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/options/option_checks.hpp"
 

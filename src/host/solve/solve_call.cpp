@@ -12,6 +12,7 @@
 
 #include "myriad/host/checks/consistency.hpp"
 #include "myriad/host/checks/event_tolerances.hpp"
+#include "myriad/host/checks/path_check.hpp"
 #include "myriad/host/chunks/chunk_driver.hpp"
 #include "myriad/host/chunks/progress_relay.hpp"
 #include "myriad/host/core/error.hpp"

@@ -68,17 +68,6 @@ extern template class data_check<float>;
 template <class R>
 void check_sample_times(const ensemble_data<R>& e, const options& o, std::int64_t count);
 
-/// The paths of a stochastic equation must have room in their counters, for the instances' numbers and for as many
-/// cells as the domain has, which the real type must tell apart. NaN domains are left to the check of the inputs.
-template <class R>
-void check_paths(const ensemble_data<R>& e, const options& o, std::int64_t count, bool adaptive);
-
-/// Into so many cells of paths a domain or phase is divided for adaptive steps, if options::noise_step does not say.
-inline constexpr int cells_of_domain = 64;
-/// The length of the cells of paths.
-template <class R>
-double cell_of_paths(const ensemble_data<R>& e, const options& o, bool adaptive);
-
 /// How many of the first `count` instances ended in earlier calls and were given new states or parameters since.
 template <class R>
 std::int64_t count_given_anew(const ensemble_data<R>& e, std::int64_t count);

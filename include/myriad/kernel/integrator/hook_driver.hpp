@@ -9,6 +9,7 @@
 #include "myriad/kernel/event/event_driver.hpp"
 #include "myriad/kernel/event/stop_driver.hpp"
 #include "myriad/kernel/integrator/consistent_state.hpp"
+#include "myriad/kernel/integrator/lane_changes.hpp"
 #include "myriad/kernel/state/integration_state.hpp"
 
 namespace myriad::detail::inline MYRIAD_TARGET {
@@ -174,7 +175,7 @@ struct hook_driver {
         s.slopes.invalidate(arrived);
         if constexpr (has_events<Model>) {
             const vec<S, m> after = detail::evaluate_events<Model>(s.now(), s.data.y, s.data);
-            const mask moved = jumped & differing(after, before);
+            const mask moved = jumped & detail::differing<S>(after, before);
             if (!any(moved)) return;
             events.forget_fired();  // their actions are done
             events.update_after_hook(moved, before);
@@ -206,27 +207,6 @@ private:
         if constexpr (team_size < Model >> 1) as_part<Model>::template keep_inputs<R>(before);
         return before;
     }
-    /// The new value in these lanes, the old one elsewhere.
-    template <class T>
-    static MYRIAD_FUNCTION T chosen(const mask& lanes, const T& now, const T& before) {
-        return select(lanes, now, before);
-    }
-    template <class T, extent size>
-    static MYRIAD_FUNCTION vec<T, size> chosen(const mask& lanes, const vec<T, size>& now, const vec<T, size>& before) {
-        vec<T, size> values;
-        MYRIAD_UNROLL
-        for (int c = 0; c < MYRIAD_LENGTH(size); ++c) values[c] = select(lanes, now[c], before[c]);
-        return values;
-    }
-    /// The lanes in which they differ.
-    template <class T, extent size>
-    static MYRIAD_FUNCTION mask differing(const vec<T, size>& now, const vec<T, size>& before) {
-        mask different = mask(false);
-        MYRIAD_UNROLL
-        for (int c = 0; c < MYRIAD_LENGTH(size); ++c) different = different | differs_in_bits(now[c], before[c]);
-        return different;
-    }
-
     /// Calls after_trigger for the pending triggers of lane i, in order of their index, and for those that their
     /// actions bring about. Returns whether there were any. Called at several places.
     MYRIAD_LARGE_FUNCTION bool act_on_triggers_of(int i) {
@@ -350,7 +330,7 @@ private:
     /// Adopts the changes that a generic hook made to `before`, in the given lanes.
     MYRIAD_FUNCTION void adopt(const mask& lanes, const lane_data<Model, S>& before, const lane_data<Model, S>& after) {
         const auto take = [&](auto use, auto& to, const auto& from, const auto& old) MYRIAD_LAMBDA {
-            if constexpr (use.written) to = chosen(lanes, from, old);
+            if constexpr (use.written) to = detail::chosen(lanes, from, old);
         };
         detail::for_each_member<Model>(take, s.data, after, before);
         const mask rescaled = lanes & differs_in_bits(after.h_next, before.h_next);
@@ -365,7 +345,7 @@ private:
     MYRIAD_FUNCTION mask differs(const lane_data<Model, S>& a, const lane_data<Model, S>& b) const {
         mask different = mask(false);
         const auto compare = [&](auto use, const auto& x, const auto& y) MYRIAD_LAMBDA {
-            if constexpr (use.acts) different = different | differing(x, y);
+            if constexpr (use.acts) different = different | detail::differing<S>(x, y);
         };
         detail::for_each_member<Model>(compare, a, b);
         if constexpr (team_size < Model >> 1) different = different | as_part<Model>::template inputs_differ<R>();

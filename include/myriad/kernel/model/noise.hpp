@@ -127,7 +127,7 @@ constexpr bool check_noise() {
                 "this method is for steps in which a stiff drift undoes the noise, and events and extrema are "
                 "found within steps as if it did not: use euler_maruyama with steps that resolve the drift");
             static_assert((!has_events<Model> && !has_summaries<Model>) || Method::embedded_order == 0,
-                          "events and extrema of a model with a diffusion are found in fixed steps alone yet: use the "
+                          "events and extrema of a model with a diffusion are found only in fixed steps: use the "
                           "method without `adaptive`, and give options::step");
             if constexpr (Method::noise == noise_taken::additive)
                 static_assert(

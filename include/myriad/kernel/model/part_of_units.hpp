@@ -22,21 +22,6 @@
 namespace myriad::detail::inline MYRIAD_TARGET {
 
 template <class Whole, int threads>
-requires team_layout<Whole>::keeps_inputs struct place_of_inputs<part_of_units<Whole, threads>> {
-    int in_memory = team_layout<Whole>::parameter;
-};
-
-/// The summaries of a thread's units. Their receivers are numbered as in a system of `units` units; see `receiver`.
-template <class Whole, int units>
-struct part_summaries {};
-template <class Whole, int units>
-requires has_summaries<Whole>
-struct part_summaries<Whole, units> {
-    static constexpr auto summaries = detail::summaries_of_units<typename Whole::unit_type, units>();
-    static_assert(check_summaries<Whole>());
-};
-
-template <class Whole, int threads>
 struct part_of_units : part_summaries<Whole, (Whole::n_unit + threads - 1) / threads>,
                        delays_of_part<part_of_units<Whole, threads>, Whole, (Whole::n_unit + threads - 1) / threads> {
     using unit_type = typename Whole::unit_type;

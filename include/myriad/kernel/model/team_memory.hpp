@@ -137,4 +137,9 @@ struct team_lane : past_of_team_of<Whole, R> {
     const integer_of<R>* event_count;
 };
 
+template <class Whole, int threads>
+requires team_layout<Whole>::keeps_inputs struct place_of_inputs<part_of_units<Whole, threads>> {
+    int in_memory = team_layout<Whole>::parameter;
+};
+
 }  // namespace myriad::detail::inline MYRIAD_TARGET

@@ -79,6 +79,16 @@ constexpr auto summaries_of_units() {
     (std::make_integer_sequence<int, units * count>{});
 }
 
+/// The summaries of a thread's units. Their receivers are numbered as in a system of `units` units; see `receiver`.
+template <class Whole, int units>
+struct part_summaries {};
+template <class Whole, int units>
+requires has_summaries<Whole>
+struct part_summaries<Whole, units> {
+    static constexpr auto summaries = detail::summaries_of_units<typename Whole::unit_type, units>();
+    static_assert(check_summaries<Whole>());
+};
+
 /// Refuses a diffusion with a wrong signature, and shows the right one. The arguments' values are unused.
 template <class Unit, class R, class T, class Inputs>
 constexpr bool check_unit_diffusion(const T* t = nullptr, const state_of_unit<Unit, R>* y = nullptr,

@@ -233,7 +233,7 @@ MYRIAD_FUNCTION auto derivative_is_infinite(const partial<S>& d) {
 
 /// Whether v has overflowed, or dv has and v nearly so.
 template <class S, class Derivative>
-MYRIAD_FUNCTION mask_of<S> has_overflown(const S& v, const Derivative& dv) {
+MYRIAD_FUNCTION mask_of<S> has_overflowed(const S& v, const Derivative& dv) {
     const real_of<S> largest = largest_of<S>, huge = largest * real_of<S>(0x1p-32);
     const S size = functions<S>::abs(v);
     return (size > largest) | ((size > huge) & derivative_is_infinite(dv));
@@ -242,38 +242,38 @@ MYRIAD_FUNCTION mask_of<S> has_overflown(const S& v, const Derivative& dv) {
 /// quotient' of quotient = u / v: (du - quotient dv) / v. Where v has overflowed, or dv has and v nearly so, dv does
 /// not count: 1 / (1 + exp(c x)) has the derivative zero for large c x, which is its limit, and not NaN or infinite.
 template <class S, class Derivative>
-MYRIAD_FUNCTION Derivative weighted_unless_overflown(const S& quotient, const S& v, const Derivative& dv) {
-    return select(detail::has_overflown(v, dv), derivative_of_constant<Derivative>::get(), Derivative(quotient * dv));
+MYRIAD_FUNCTION Derivative weighted_unless_overflowed(const S& quotient, const S& v, const Derivative& dv) {
+    return select(detail::has_overflowed(v, dv), derivative_of_constant<Derivative>::get(), Derivative(quotient * dv));
 }
 template <class S, int count>
-MYRIAD_FUNCTION partials<S, count> weighted_unless_overflown(const S& quotient, const S& v,
-                                                             const partials<S, count>& dv) {
+MYRIAD_FUNCTION partials<S, count> weighted_unless_overflowed(const S& quotient, const S& v,
+                                                              const partials<S, count>& dv) {
     return partials<S, count>::each(
-        [&](auto i) MYRIAD_LAMBDA { return detail::weighted_unless_overflown(quotient, v, dv.in[i]); });
+        [&](auto i) MYRIAD_LAMBDA { return detail::weighted_unless_overflowed(quotient, v, dv.in[i]); });
 }
 template <class S, class Derivative>
 MYRIAD_FUNCTION Derivative quotient_rule(const S& quotient, const Derivative& du, const S& v, const Derivative& dv) {
-    return (du - detail::weighted_unless_overflown(quotient, v, dv)) / v;
+    return (du - detail::weighted_unless_overflowed(quotient, v, dv)) / v;
 }
 template <class S, class Derivative>
 MYRIAD_FUNCTION Derivative quotient_rule(const S& quotient, const S& v, const Derivative& dv) {
-    return -detail::weighted_unless_overflown(quotient, v, dv) / v;
+    return -detail::weighted_unless_overflowed(quotient, v, dv) / v;
 }
 template <class S, int count>
 MYRIAD_FUNCTION partials<S, count> quotient_rule(const S& quotient, const partials<S, count>& du, const S& v,
                                                  const partials<S, count>& dv) {
-    return (du - detail::weighted_unless_overflown(quotient, v, dv)) * detail::reciprocal_or_zero(v);
+    return (du - detail::weighted_unless_overflowed(quotient, v, dv)) * detail::reciprocal_or_zero(v);
 }
 template <class S, int count>
 MYRIAD_FUNCTION partials<S, count> quotient_rule(const S& quotient, const S& v, const partials<S, count>& dv) {
-    return -detail::weighted_unless_overflown(quotient, v, dv) * detail::reciprocal_or_zero(v);
+    return -detail::weighted_unless_overflowed(quotient, v, dv) * detail::reciprocal_or_zero(v);
 }
 
 /// d, the derivative of a function that becomes flat faster than its argument x grows, as tanh; but zero, its limit,
 /// where x has overflowed, or dx has and x nearly so: there d may be a slope of zero times infinity.
 template <class S, class Derivative>
 MYRIAD_FUNCTION Derivative flat_far_out(const S& x, const Derivative& dx, const Derivative& d) {
-    return select(detail::has_overflown(x, dx), derivative_of_constant<Derivative>::get(), d);
+    return select(detail::has_overflowed(x, dx), derivative_of_constant<Derivative>::get(), d);
 }
 template <class S, int count>
 MYRIAD_FUNCTION partials<S, count> flat_far_out(const S& x, const partials<S, count>& dx, const partials<S, count>& d) {
