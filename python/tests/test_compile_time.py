@@ -14,7 +14,9 @@ import pytest
 
 import example_models
 import myriad_ode as my
+from myriad_ode.codegen.model import _of_one_thread
 from myriad_ode.kernels import compiler, nvrtc
+from myriad_ode.solving import past
 from myriad_ode.symbolic.operations import cost, operations
 from test_gpu import network
 
@@ -131,3 +133,18 @@ def test_python_counts_the_instructions_of_functions_as_cpp_does():
             for name, known in operations.items()}
     assert {name: both.get(name, 1) for name in of_cpp} == of_cpp
     assert len(of_cpp) > 30
+
+
+def test_numbers_that_python_has_of_the_library_are_those_of_its_headers():
+    headers = pathlib.Path(__file__).resolve().parents[2] / "include" / "myriad"
+
+    def numbers(file, expression):
+        return [int(one) for one in re.search(expression, (headers / file).read_text(encoding="utf-8")).groups()]
+
+    jumps = numbers("kernel/event/breaking_points.hpp",
+                   r"most_jumps_of_one = (\d+), most_jumps_to_second = (\d+) \* most_jumps_of_one")
+    assert jumps == [past._most_jumps, past._most_to_second / past._most_jumps]
+    assert numbers("kernel/methods/runge_kutta_4.hpp", r"int order = (\d+)") == [past._order]
+    assert numbers("host/options/option_table.hpp", r"\"history_steps\".*from_to\(0, (\d+)\)") == [past._largest]
+    assert numbers("kernel/integrator/team_choice.hpp", r"most_states_of_one_thread = .*\? (\d+) : (\d+);") == [
+        _of_one_thread["double"], _of_one_thread["float"]]
