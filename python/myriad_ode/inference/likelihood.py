@@ -4,8 +4,7 @@ sets of values are one ensemble."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,7 +16,7 @@ from ..models.noise import refuse_derivatives
 from ..sweeps.inputs import by_name, real
 from .data import by_quantity, deviations, read_data
 from .experiments import Experiment
-from .measurements import Given, Terms, added, censored_terms, normal_terms, sample_times
+from .measurements import Given, Measurements, Terms, added, censored_terms, normal_terms, sample_times
 from .noise_models import NoiseModel
 from .objective import Curve, Free, Objective
 from .priors import Prior, terms_of
@@ -28,43 +27,6 @@ if TYPE_CHECKING:
     from ..symbolic.types import Array, ByComponent, SomeComponents, Values
 
 __all__ = ["Likelihood", "likelihood"]
-
-
-@dataclass
-class _Measurements:
-    """Those of a quantity with noise on one scale, one after the other: numbers of their experiments and of the samples
-    there, times, values or limits, the side of a limit that a value is on, and both parts of the deviation."""
-
-    quantity: str
-    scale: str
-    experiment: Array
-    place: Array
-    time: Array
-    measured: Array
-    side: Array
-    additive: Given
-    relative: Given
-
-    def __post_init__(self) -> None:
-        self.varies = (self.additive.free >= 0) | (self.relative.free >= 0) | (self.relative.number > 0)
-
-    @staticmethod
-    def joined(parts: Sequence[_Measurements]) -> _Measurements:
-        """Those of several experiments, with noise on the same scale."""
-        def of(name: str) -> Array:
-            return np.concatenate([getattr(part, name) for part in parts])
-
-        return _Measurements(parts[0].quantity, parts[0].scale, of("experiment"), of("place"), of("time"),
-                             of("measured"), of("side"), Given.joined([part.additive for part in parts]),
-                             Given.joined([part.relative for part in parts]))
-
-    def deviation(self, sets: Array, mean: Array) -> tuple[Array, Array, Array, Array]:
-        """The standard deviations about means, NaN where there is none, and their derivatives by the means and by both
-        parts."""
-        additive, relative = self.additive.values(sets), self.relative.values(sets)
-        found = np.hypot(additive, relative * mean)
-        found = np.where(found > 0, found, np.nan)
-        return found, relative**2 * mean / found, additive / found, relative * mean**2 / found
 
 
 class Likelihood(Objective):
@@ -194,7 +156,7 @@ class Likelihood(Objective):
         self._times = sample_times([np.unique(data.times) for data in self._data], self._begins, self._ends)
         of_all = {what: by_quantity(components, given, self._quantities, what)
                   for what, given in (("sigma", sigma), ("limits", limits))}
-        parts: dict[tuple[str, str], list[_Measurements]] = {}
+        parts: dict[tuple[str, str], list[Measurements]] = {}
         without = with_sigma = False
         self._is_likelihood = False
         for x, (e, data) in enumerate(zip(self._given, self._data)):
@@ -214,7 +176,7 @@ class Likelihood(Objective):
                                 "noise: give limits= if they are below a limit of quantification, or another noise "
                                 "model")
                 self._is_likelihood |= isinstance(spec, (str, NoiseModel)) or min(-low, high) < np.inf
-                parts.setdefault((name, scale), []).append(_Measurements(
+                parts.setdefault((name, scale), []).append(Measurements(
                     name, scale, np.full(rows.size, x), np.searchsorted(self._times[x], data.times[rows]),
                     data.times[rows], values, side, additive, relative))
         if without and with_sigma:
@@ -222,7 +184,7 @@ class Likelihood(Objective):
         if without and self._is_likelihood:
             raise Error("limits= need the deviations of the data: give sigma=, as numbers or as names in free=")
         self.has_sigma = not without
-        self._measurements = [_Measurements.joined(of) for _, of in sorted(
+        self._measurements = [Measurements.joined(of) for _, of in sorted(
             parts.items(), key=lambda part: self._quantities.index(part[0][0]))]
 
     def _noise(self, spec: Any, x: int, name: str) -> tuple[str, Given, Given]:
@@ -303,7 +265,7 @@ class Likelihood(Objective):
             sensitivities, time=(np.tile(self._begins, count), np.tile(self._ends, count)),
             size=count * len(self.experiments), samples=samples)
 
-    def _means(self, m: _Measurements, run: Run, sets: Array) -> tuple[Array, Array]:
+    def _means(self, m: Measurements, run: Run, sets: Array) -> tuple[Array, Array]:
         """The model at measurements, [set, measurement], and its derivatives by the free components."""
         shape = len(sets), len(self.experiments), self._times.shape[1]
         mean = run._values_of(m.quantity).reshape(shape)[:, m.experiment, m.place]
@@ -335,7 +297,7 @@ class Likelihood(Objective):
                     self._lost_to = m.quantity
         return added([*terms, *(terms_of(prior, sets, k) for k, prior in self._priors)])
 
-    def _terms_of(self, m: _Measurements, sets: Array, mean: Array, by_mean: Array) -> list[Terms]:
+    def _terms_of(self, m: Measurements, sets: Array, mean: Array, by_mean: Array) -> list[Terms]:
         """The terms of the likelihood of measurements, exact ones and then censored ones."""
         deviation, slope, *of_parts = m.deviation(sets, mean)
         by_deviation = slope[..., None] * by_mean

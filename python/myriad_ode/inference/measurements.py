@@ -46,6 +46,43 @@ class Given:
         found[:, rows, self.free[rows]] += partial[:, rows]
 
 
+@dataclass
+class Measurements:
+    """Those of a quantity with noise on one scale, one after the other: numbers of their experiments and of the samples
+    there, times, values or limits, the side of a limit that a value is on, and both parts of the deviation."""
+
+    quantity: str
+    scale: str
+    experiment: Array
+    place: Array
+    time: Array
+    measured: Array
+    side: Array
+    additive: Given
+    relative: Given
+
+    def __post_init__(self) -> None:
+        self.varies = (self.additive.free >= 0) | (self.relative.free >= 0) | (self.relative.number > 0)
+
+    @staticmethod
+    def joined(parts: Sequence[Measurements]) -> Measurements:
+        """Those of several experiments, with noise on the same scale."""
+        def of(name: str) -> Array:
+            return np.concatenate([getattr(part, name) for part in parts])
+
+        return Measurements(parts[0].quantity, parts[0].scale, of("experiment"), of("place"), of("time"),
+                             of("measured"), of("side"), Given.joined([part.additive for part in parts]),
+                             Given.joined([part.relative for part in parts]))
+
+    def deviation(self, sets: Array, mean: Array) -> tuple[Array, Array, Array, Array]:
+        """The standard deviations about means, NaN where there is none, and their derivatives by the means and by both
+        parts."""
+        additive, relative = self.additive.values(sets), self.relative.values(sets)
+        found = np.hypot(additive, relative * mean)
+        found = np.where(found > 0, found, np.nan)
+        return found, relative**2 * mean / found, additive / found, relative * mean**2 / found
+
+
 def sample_times(of_experiments: Sequence[Array], begins: Array, ends: Array) -> Array:
     """Times of sampling of several experiments, as many of each, [experiment, sample]: those of its measurements,
     ascending, and others from begin to end where it has fewer than another."""

@@ -15,6 +15,7 @@ from ..symbolic.folding import add, choose, compare, constant, divide, make_fold
 from ..symbolic.node import walk
 from ..symbolic.rewrite import rebuilt, replaced
 from .recorded import RecordedModel
+from .recorded_check import check_recorded
 from .state_jumps import jumping
 from .trigger import Queue, Trigger, edges_of, trigger
 
@@ -85,7 +86,7 @@ def with_located_switches(model: AnyModel) -> RecordedModel:
     made.located_switches = [mode.accessories[0].value[1] for mode in modes]
     made._collect(list(made.equations))
     made._make_jumps_exact(given.name or None, model.mass_matrix is not None)
-    made._check()
+    check_recorded(made)
     return made
 
 

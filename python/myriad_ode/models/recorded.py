@@ -18,7 +18,6 @@ from ..symbolic.folding import add, constant, multiply
 from ..symbolic.functions import draws
 from ..symbolic.node import Node, symbols_of, text, walk
 from ..symbolic.table import tables_of
-from ..symbolic.whole_and_real import generic_problem
 from .any_model import AnyModel, names_of
 from . import delays
 from .components import name_of
@@ -29,6 +28,7 @@ from .latex import model_html, model_latex
 from .mass_matrix import left_sides, read_mass_matrix
 from .noise import equation_texts, read_noise, refuse_parts, refuse_symbols
 from .reader import Reader
+from .recorded_check import check_recorded
 from .tabled_doses import refuse_misfits
 from .time_jumps import TimeSwitches
 from .trigger import Edge, Queue, Trigger, edges_of, needs_queue
@@ -98,7 +98,7 @@ class RecordedModel(AnyModel):
         self.name = self._default_name(equations) if name is None else sym.check_name(name, "a model")
         if self.history:
             self.defaults = {state.value[1]: value for state, value in self.history.items()}
-        self._check()
+        check_recorded(self)
 
     def _default_name(self, equations: object) -> str:
         """The name of the function, if a struct can have it, or "model"."""
@@ -230,7 +230,7 @@ class RecordedModel(AnyModel):
         made.rhs = list(made.equations.values())
         made._collect(list(made.equations))
         made._make_jumps_exact(given.name or None, self.mass_matrix is not None)
-        made._check()
+        check_recorded(made)
         return made
 
     def _shares(self, name: str, line: tuple[str, int] | None) -> list[float]:
@@ -253,7 +253,7 @@ class RecordedModel(AnyModel):
         made._as_given = copy.copy(self._as_given)
         made._as_given.generate = made.generate
         made._collect(list(made.equations))
-        made._check()
+        check_recorded(made)
         return made
 
     def with_jumps_apart(self: Recorded, moves: Callable[[set[Any]], bool]) -> Recorded:
@@ -353,51 +353,6 @@ class RecordedModel(AnyModel):
     def component_names(self) -> list[str]:
         """All names, in the order of `enumerations`."""
         return [n for _, names in self.enumerations() for n in names]
-
-    def _check(self) -> None:
-        kind_of: dict[str, str] = {}
-        for kind, names in self.enumerations():
-            for name in names:
-                if name in kind_of:
-                    clash = f"names both {sym.a(kind_of[name])} and {sym.a(kind)}"
-                    clash = "is the name of two components" if kind_of[name] == kind else clash
-                    raise Error(f"'{name}' {clash}{at(self.line)}: rename one of them")
-                kind_of[name] = kind
-        for symbol in self._in_functions:
-            kind, name = symbol.value
-            if kind in ("event_count", "action") or kind == "built-in" and name != "time":
-                raise Error(f"{name} stands in an equation, event or summary{at(self.line)}, but only hooks and "
-                            "actions see it: store it in an accessory there")
-        problem = generic_problem(self._functions)
-        if problem is not None:
-            raise Error(f"`{text(problem)}`{at(problem.line)} mixes whole and real numbers, or multiplies whole ones, "
-                        "in an equation or event: compare them, as in my.where(mode == 1, a, b)")
-        for node in walk(self._functions):
-            if node.op == "powr" and any(s.value[0] == "state" or s is sym.time for s in symbols_of([node.args[1]])):
-                raise Error(f"the exponent of `{text(node)}`{at(node.line)} depends on the state or on time: use "
-                            "my.pow, as powr has no derivative by its exponent")
-        for what, assignments in self._hooks:
-            for _, value in assignments:
-                for symbol in symbols_of([value]):
-                    kind, name = symbol.value
-                    if kind == "action":
-                        raise Error(f"{name} is read in {what}{at(self.line)}, but can only be assigned")
-                    if kind == "event_count" and name not in [e.name for e in self.events]:
-                        raise Error(f"event_count('{name}') in {what}{at(self.line)} names no event: there are "
-                                    f"{', '.join(e.name for e in self.events) or 'none'}")
-        for what, members, present in (
-                ("stops", "stop stop_time", len(self.stop_names) - len(self.switches.switches)),
-                ("triggers", "trigger condition after_trigger initial_value persistent queue", self.triggers),
-                ("noise", "noise n_noise diffusion additive_noise", self.noise),
-                ("delays", " ".join(delays.own_names), self.delays)):
-            taken = next((n for n in members.split() if n in kind_of), None)
-            if taken is not None and present:
-                raise Error(f"'{taken}' names {sym.a(kind_of[taken])}{at(self.line)}, and has a meaning of its own in "
-                            f"a model with {what}: call it '{taken}_'")
-        delays.check(self)
-        if self.name in kind_of:
-            raise Error(f"the model has the name of its {kind_of[self.name]} '{self.name}'{at(self.line)}: give "
-                        "it another one, name='...'")
 
     # What it is used for
 

@@ -15,6 +15,7 @@ from ..base import component_kinds as kinds
 from ..models.any_model import AnyModel, names_of
 from ..models.components import listed, name_of
 from ..models.recorded import RecordedModel
+from ..models.recorded_check import check_recorded
 from ..results.quantities import called
 from ..solving.options import Options
 from ..symbolic import symbols as sym
@@ -77,5 +78,5 @@ def _as_accessories(model: AnyModel, chosen: Collection[str]) -> AnyModel:
     made.finalise = [*model.finalise, *((targets[name], value) for name, value in values.items())]
     made._accessory_targets = [*model._accessory_targets, *targets.values()]
     made._collect(list(made.equations))
-    made._check()
+    check_recorded(made)
     return made

@@ -16,7 +16,7 @@ import numpy as np
 
 from .. import _core
 from ..base import html
-from ..base.component_kinds import recorded as recorded_kinds, shared as shared_kinds
+from ..base.component_kinds import recorded as recorded_kinds
 from ..base.core_words import in_words, with_event_names
 from ..base.errors import Error
 from ..kernels import nvrtc
@@ -24,7 +24,7 @@ from ..kernels.choose import kernel_for
 from ..kernels.devices import device_names
 from ..models import time_jumps
 from ..models.any_model import AnyModel
-from ..models.components import Components, listed, short_name
+from ..models.components import Components, listed
 from ..models.delays import refuse_history_steps
 from ..models.located_switches import note_on_sliding
 from ..models.methods import method_type, stochastic
@@ -34,17 +34,17 @@ from ..models.sensitivities import note_on
 from ..models.whole_numbers import check_whole_numbers
 from ..results.report import Interrupted
 from ..solving.core_options import finish_options, longest_step, make_options, options_of, takes_options
-from ..solving.gather import ends_of, full_name, gather_axes, refuse_backwards, refuse_missing, refuse_shared
+from ..solving.gather import ends_of, full_name, refuse_backwards
 from ..solving.options import Options, StudyArguments
-from ..solving.past import prepare_past, values_of_axes
+from ..solving.past import prepare_past
 from ..solving.progress import ProgressDisplay
 from ..sweeps.inputs import by_name, only, path_text, real, text, whole
 from ..sweeps.sweep import Sweep
-from ..symbolic.axes import Axis, Random
 from ..symbolic.functions import draws
 from ..symbolic.node import Node
 from ..symbolic.symbols import time as time_symbol
 from .executed_run import ExecutedRun
+from .instances import set_instances
 from .outputs import with_outputs
 from .reduce import Reduction
 from .result import StudyResult
@@ -112,8 +112,10 @@ class Study:
                 "float64" if precision == "double" else "float32", model.name or "model",
                 method_type(chosen, control, samples is not None).replace("myriad::", ""))
             refuse_backwards(model, *_known_ends(time))
-            values = self._set_instances(made, components, sweep, start, time, draws is not None or paths is not None)
+            instances = set_instances(made, components, sweep, start, time, draws is not None or paths is not None)
+            values = instances.values
             prepare_past(model, chosen, values, (values.get("t_begin"), values.get("t_end")), options, core_options)
+            self._own_domains = instances.own_domains
             made.options(core_options)
             self._looks_at_domains = bool(samples is not None or options.phase_length or options.carry_on)
             if draws is not None:
@@ -121,7 +123,7 @@ class Study:
             if paths is not None:
                 made.repeat(count_of_paths(model, paths), "path")
             made.seed(seed & ((1 << 64) - 1))
-            check_whole_numbers(model.generate, made.size, self._shared_integers)
+            check_whole_numbers(model.generate, made.size, instances.shared_integers)
             self._name = functools.partial(_name, model, components)
             self._set_kept(made, components, keep, bool(recorded or sampled or reduce or core_options.record.time))
             for reduction in reductions:
@@ -144,71 +146,6 @@ class Study:
         for key, value in by_name(notes, "notes", "notes={\"who\": \"...\"}").items():
             key = text(key, "the key of a note")
             made.note(f"user.{key}", text(value, f"the note '{key}'"))
-
-    def _set_instances(self, made: _core.Study, components: Components, sweep: Sweep | ByComponent | None,
-                       start: ByComponent | None, time: tuple[Any, Any] | None, repeated: bool) -> dict[str, Any]:
-        """Axes, random values and values for all instances. Returns those that are known, by name, each axis along a
-        dimension of its own."""
-        axes, constants = gather_axes(components, sweep, start, time)
-        varying = [*(name for axis in axes for name in axis),
-                   *(name for name, value in constants.items() if isinstance(value, Random))]
-        given = {short_name(name) for name in (*constants, *varying)}
-        for name in components.generated:
-            if name in given:
-                raise Error(f"'{name}' is given to the study, and generate= of the model sets it: give it once")
-        refuse_missing(components, {*components.defaults, *components.generated, *given})
-        if components.generated and not axes and not repeated:
-            raise Error("the model generates its instances, and nothing says how many: give draws=")
-        self._own_domains = not {"t_begin", "t_end"}.isdisjoint(varying)
-        defaults = self._defaults(components, constants, varying)
-        for name, value in defaults.items():
-            if name not in given:
-                made.set(full_name(components, name), value)
-        for axis in axes:
-            self._set_axis(made, axis)
-        self._shared_integers = {short_name(name): int(value) for name, value in constants.items()
-                                 if name.startswith("shared_integer.")}
-        for name, value in constants.items():
-            if isinstance(value, Random):
-                if (kind := name.partition(".")[0]) in shared_kinds:
-                    refuse_shared(kind, short_name(name), value)
-                made.axis(name, value.core())
-            else:
-                made.set(name, float(value))
-        known = {**defaults, **values_of_axes(axes, constants)}
-        return {name: value for name, value in known.items() if name not in components.generated}
-
-    @staticmethod
-    def _set_axis(made: _core.Study, axis: Mapping[str, Any]) -> None:
-        """An axis, with all whose values go along it."""
-        for name, values in axis.items():
-            if len(values) == 0:
-                raise Error(f"'{short_name(name)}' has no values: a study has one instance or more; my.solve takes a "
-                            "sweep of none")
-            if (kind := name.partition(".")[0]) in shared_kinds:
-                refuse_shared(kind, short_name(name), values)
-        pairs = [(name, values.core() if isinstance(values, Axis) else
-                  _core.values(np.asarray(values, float).tolist())) for name, values in axis.items()]
-        if len(pairs) == 1:
-            made.axis(*pairs[0])
-        else:
-            made.zip(pairs)
-
-    @staticmethod
-    def _defaults(components: Components, constants: Mapping[str, Any], varying: Sequence[str]) -> dict[str, float]:
-        """The values of components that are not given, as numbers."""
-        ends = {"t_begin", "t_end"}
-        unknown = {short_name(name): np.nan for name in varying if name not in ends}
-        fixed = {short_name(name): value for name, value in constants.items()
-                 if name not in ends and not isinstance(value, Random)}
-        differ = {*unknown, *({"t"} if "t_begin" in varying else ())}
-        known = components.completed({**fixed, **unknown}, constants.get("t_begin", 0.0))
-        found = {n: v for n, v in known.items() if n in components.defaults and n not in components.tables}
-        for name in found:
-            if name not in fixed and name not in unknown and components.follows(name, differ, fixed):
-                raise Error(f"'{name}' follows from what differs between the instances of the study: give it in the "
-                            "sweep or in start=, or use my.solve")
-        return {n: float(v) for n, v in found.items() if v is not None and n not in unknown}
 
     def _set_kept(self, made: _core.Study, components: Components, keep: Any, anything_else: bool) -> None:
         if keep is None:
