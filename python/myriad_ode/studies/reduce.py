@@ -33,7 +33,7 @@ Over = Union[str, Sequence[str], None]
 class Reduction:
     """A reduction, made by the functions of this module."""
 
-    def __init__(self, over: Over, kind: str, *arguments: Any) -> None:
+    def __init__(self, kind: str, *arguments: Any, over: Over = None) -> None:
         self.kind, self.arguments, self.over = kind, arguments, _axes(over)
 
     @property
@@ -84,13 +84,13 @@ def _edges(edges: Axis | npt.ArrayLike) -> Axis:
 def histogram(variable: str, edges: Axis | npt.ArrayLike, over: Over = None) -> Reduction:
     """How many values lie between neighbouring edges, as numpy.histogram: "x_end_histogram" along "x_end_bin"; and
     "x_end_outside", how many lie below, above, and are not finite."""
-    return Reduction(over, "histogram_of", _variable(variable), _edges(edges))
+    return Reduction("histogram_of", _variable(variable), _edges(edges), over=over)
 
 
 def histograms(variable: str, edges: Axis | npt.ArrayLike, over: Over = None) -> Reduction:
     """A histogram for each phase or sample: "x_sample_histograms" along "sample" and "x_sample_histograms_bin"; and
     "x_sample_histograms_outside"."""
-    return Reduction(over, "histograms_of", _variable(variable), _edges(edges))
+    return Reduction("histograms_of", _variable(variable), _edges(edges), over=over)
 
 
 def quantiles(variable: str, quantiles: npt.ArrayLike, edges: Axis | npt.ArrayLike, over: Over = None) -> Reduction:
@@ -98,7 +98,7 @@ def quantiles(variable: str, quantiles: npt.ArrayLike, edges: Axis | npt.ArrayLi
     percentiles over time. They are found by a histogram, to the width of a bin; NaN where one lies below the first edge
     or above the last one."""
     wanted = np.atleast_1d(np.asarray(quantiles, dtype=float)).tolist()
-    return Reduction(over, "quantiles_of", _variable(variable), wanted, _edges(edges))
+    return Reduction("quantiles_of", _variable(variable), wanted, _edges(edges), over=over)
 
 
 def confidence_levels(quantiles: npt.ArrayLike, draws: int, level: float = 0.95) -> np.ndarray:
@@ -116,35 +116,35 @@ def confidence_levels(quantiles: npt.ArrayLike, draws: int, level: float = 0.95)
 
 def minimum(variable: str, over: Over = None) -> Reduction:
     """The smallest value, for each phase or sample: "x_end_minimum"."""
-    return Reduction(over, "minimum_of", _variable(variable))
+    return Reduction("minimum_of", _variable(variable), over=over)
 
 
 def maximum(variable: str, over: Over = None) -> Reduction:
     """The largest value, for each phase or sample: "x_end_maximum"."""
-    return Reduction(over, "maximum_of", _variable(variable))
+    return Reduction("maximum_of", _variable(variable), over=over)
 
 
 def mean(variable: str, over: Over = None) -> Reduction:
     """The mean, for each phase or sample: "x_end_mean". The sum is exact and rounded once."""
-    return Reduction(over, "mean_of", _variable(variable))
+    return Reduction("mean_of", _variable(variable), over=over)
 
 
 def variance(variable: str, over: Over = None) -> Reduction:
     """The variance, for each phase or sample: "x_end_variance", the squares of deviations from the mean over their
     number less one. Sums are exact, so that nothing cancels; NaN of values beyond 1e144."""
-    return Reduction(over, "variance_of", _variable(variable))
+    return Reduction("variance_of", _variable(variable), over=over)
 
 
 def standard_error(variable: str, over: Over = None) -> Reduction:
     """The standard error of the mean, for each phase or sample: "x_end_standard_error", as `mean` is off by where
     instances are independent, as paths of a stochastic equation are."""
-    return Reduction(over, "standard_error_of", _variable(variable))
+    return Reduction("standard_error_of", _variable(variable), over=over)
 
 
 def covariance(variable: str, other: str, over: Over = None) -> Reduction:
     """The covariance of two variables, for each phase or sample: "x_end_v_end_covariance", the products of deviations
     from the means over their number less one, of instances where both are finite. Sums are exact, as of `variance`."""
-    return Reduction(over, "covariance_of", _variable(variable), _variable(other))
+    return Reduction("covariance_of", _variable(variable), _variable(other), over=over)
 
 
 class _OfChunk:
@@ -162,10 +162,10 @@ def total(name: str, inputs: str | Sequence[str], size: int, function: Callable[
     """The sum over chunks of `size` numbers that a function computes of each chunk: variable `name`. The function gets
     a dict of arrays, the inputs by name and "status", in words, with a row for each instance of the chunk, failed ones
     too, and returns the numbers. `name` stands for it in the study's description: give another one when it changes.
-    Threads take turns in calling it; for executors it must pickle. With `over=` it is called for each run of neighbouring
-    instances of one point of the other axes."""
+    Threads take turns in calling it; for executors it must pickle. With `over=` it is called for each run of
+    neighbouring instances of one point of the other axes."""
     inputs = [inputs] if isinstance(inputs, str) else list(inputs)
-    return Reduction(over, "sum_of", _variable(name), [_variable(i) for i in inputs], int(size), _OfChunk(function))
+    return Reduction("sum_of", _variable(name), [_variable(i) for i in inputs], int(size), _OfChunk(function), over=over)
 
 
 def __dir__() -> list[str]:
