@@ -165,7 +165,8 @@ def total(name: str, inputs: str | Sequence[str], size: int, function: Callable[
     Threads take turns in calling it; for executors it must pickle. With `over=` it is called for each run of
     neighbouring instances of one point of the other axes."""
     inputs = [inputs] if isinstance(inputs, str) else list(inputs)
-    return Reduction("sum_of", _variable(name), [_variable(i) for i in inputs], int(size), _OfChunk(function), over=over)
+    return Reduction("sum_of", _variable(name), [_variable(i) for i in inputs], int(size), _OfChunk(function),
+                     over=over)
 
 
 def __dir__() -> list[str]:
