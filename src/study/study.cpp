@@ -80,8 +80,10 @@ void check_memory(double bytes_per_instance, const studies::layout& content, con
     double sums = 0;
     for (const studies::variable& v : content.variables)
         if (v.extent == studies::along::chunks) sums += static_cast<double>(v.item_bytes());
-    need.add("sums of reductions", sums * static_cast<double>(in_memory ? content.chunks() : 2 * at_once));
     need.check(message("chunks of ", content.chunk, " instances"), advice);
+    need.add("sums of reductions", sums * static_cast<double>(in_memory ? content.chunks() : 2 * at_once));
+    need.check(message("reductions in ", content.chunks(), " chunks"),
+               statement_of("reduce over more axes, or make chunks larger"));
 }
 
 }  // namespace

@@ -185,7 +185,7 @@ TEST_CASE("Reductions are those of what is kept", "[study]") {
 }
 TEST_CASE("A reduction over an axis is that of each point of the other axes, whatever the chunks", "[study]") {
     const auto run = [](std::int64_t chunk, const ensemble_reduction& reduction) {
-        study<lorenz, runge_kutta_4> s;
+        study<lorenz, runge_kutta_4, float> s;
         s.axis("r", values({28, 10}));
         s.axis("x", linspace(0, 1, 3));
         s.axis("y", linspace(0.5, 2, 4));
