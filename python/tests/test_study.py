@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Studies against `solve`, in memory, in stores and after a stop."""
 
-import contextlib
 import json
 import os
 import pathlib
@@ -297,13 +296,18 @@ def test_reductions_over_paths_have_the_same_bits_for_other_chunks_and_after_a_s
     expected = {name: np.array(reduced_paths(chunk=36)[name]) for name in names}
     assert "x_end_v_end_covariance" in names and "x_sample_quantiles" in names
 
-    study = my.study(paths_model, path_sweep, start={v: 0}, keep=[x, v], reduce=per_set, **of_paths)
+    calls = []
 
-    def stop_in_the_middle(done, total):
-        if done < total:
-            raise KeyboardInterrupt
-    with contextlib.suppress(KeyboardInterrupt, my.Interrupted):
-        study.run(tmp_path / "store", chunk=1, progress=stop_in_the_middle)
+    def stop_in_the_middle(chunk):
+        calls.append(1)
+        if len(calls) > 12:
+            raise KeyError
+        return per_set[-1].arguments[-1].function(chunk)
+    stops = my.reduce.total("positive", "v_end", 1, stop_in_the_middle, over=["path", "k"])
+    study = my.study(paths_model, path_sweep, start={v: 0}, keep=[x, v], reduce=[*per_set[:-1], stops], **of_paths)
+    with pytest.raises(KeyError):
+        study.run(tmp_path / "store", chunk=1)
+    assert 0 < my.open_study(tmp_path / "store").done < 36
     for found in (reduced_paths(tmp_path / "store"), reduced_paths(chunk=5), reduced_paths(chunk=1)):
         for name in names:
             np.testing.assert_array_equal(found[name], expected[name], err_msg=name)
