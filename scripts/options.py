@@ -47,6 +47,8 @@ class Field:
             if row["type"] == "number" and not math.isfinite(float(row["initial"] or "nan")):
                 self.hint, self.default = "float | None", "None"
         self.default = self.default.replace("e-0", "e-")
+        if self.hint == "Tolerance":
+            self.default = f"NotGiven({self.default})"
 
     def meaning(self):
         """The sentence, with range and unit."""
@@ -71,7 +73,7 @@ def python_module(rows, option_names):
              '"""The options of `solve` and `study`. Written by scripts/options.py from the table of options."""', '',
              'from __future__ import annotations', '', 'from collections.abc import Mapping',
              'from dataclasses import dataclass', 'from typing import Literal, TypedDict', '',
-             'from ..symbolic.types import Component, SomeComponents, Tolerance, Values', '',
+             'from ..symbolic.types import Component, NotGiven, SomeComponents, Tolerance, Values', '',
              '__all__ = ["EventChoice", "Options", "RecordChoice", "SampleChoice"]', '']
     for struct, name, what in (("events", "EventChoice", "How an event is detected, instead of what the model says."),
                                ("record", "RecordChoice", "What is kept at the end of each phase."),

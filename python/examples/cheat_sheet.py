@@ -45,7 +45,8 @@ run.plot.bifurcation(x="k", y="x").figure.savefig("cheat_sheet.png")
 # snippet: study
 study = my.study(duffing, {k: my.linspace(0.2, 0.3, 40), B: 0.3}, draws=25, seed=1,
                  start={x: my.normal(0, 1), v: my.uniform(-1, 1)}, time=(0, 2 * np.pi), phases=32,
-                 reduce=[my.reduce.mean("x_end"), my.reduce.histogram("v_end", my.linspace(-2, 2, 41))])
+                 reduce=[my.reduce.mean("x_end", over="draw"),   # for each k; without over= of all instances
+                         my.reduce.histogram("v_end", my.linspace(-2, 2, 41))])
 result = study.run("duffing_study")                     # a folder, in which it goes on if it is run again
 result["x_end_mean"], result.to_xarray()
 # end of snippet

@@ -259,12 +259,13 @@ void bind_study(nb::module_& m) {
     m.def("values", [](std::vector<double> list) { return values(std::move(list)); });
     m.def("uniform", &uniform);
     m.def("normal", &normal);
-    nb::class_<ensemble_reduction>(m, "Reduction");
+    nb::class_<ensemble_reduction>(m, "Reduction").def("over", &ensemble_reduction::over);
     m.def("histogram_of", &histogram_of);
     m.def("histograms_of", &histograms_of);
     m.def("quantiles_of", &quantiles_of);
     for (const auto& [name, make] : studies::named_reductions)
         m.def(name, [reduction = make](const std::string& variable) { return reduction(variable); });
+    m.def("covariance_of", &covariance_of);
     m.def("sum_of", &sum_by_python);
 
     m.def("result_names", &result_names);

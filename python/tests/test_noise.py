@@ -449,13 +449,21 @@ def test_adaptive_steps_of_additive_noise_begin_with_a_64th_of_the_domain():
 
 @pytest.mark.parametrize("more, said", [
     (dict(method="milstein"), "milstein takes fixed steps: give step="),
-    (dict(method="sriw1", rtol=1e-8), "sriw1 takes fixed steps or adaptive ones: give step=, or rtol= and atol="),
+    (dict(method="sriw1", rtol=my.Options().rtol),
+     "sriw1 takes fixed steps or adaptive ones: give step=, or rtol= and atol="),
     (dict(method="sriw1", control="rms_norm"), "adaptive steps along a path are halved and doubled, and have no other"),
     (dict(method="sriw1", control="halving", step=0.1), "there is no step-size control 'halving': leave out step="),
 ])
 def test_what_adaptive_steps_along_paths_do_not_take_is_refused(more, said, nothing_compiles):
     with pytest.raises(my.Error, match=said):
         call(diagonal(), **{**dict(step=None, rtol=1e-2), **more})
+
+
+@pytest.mark.parametrize("given", [dict(rtol=1e-8, atol=1e-8), dict(options=my.Options(atol=1e-8))])
+def test_tolerances_that_are_given_are_given_whatever_their_value(given):
+    options = pickle.loads(pickle.dumps(given))
+    run = my.solve(my.model({x: 0}, noise={x: 1}), start={x: 0}, time=(0, 1), method="sra1", seed=1, **options)
+    assert run.report.failed == 0 and run.accepted_steps[0] >= 64
 
 
 def test_events_with_adaptive_steps_along_paths_are_refused(nothing_compiles):

@@ -250,6 +250,88 @@ def run_slowly(store, sent=None, chunk=50, end=300):
     return told[told.index("stopped"):] if "stopped" in told else told[told.index("ended"):] if "ended" in told else []
 
 
+paths_model = my.model({x: v, v: -k * x - 0.5 * v}, noise={v: 0.3})
+of_paths = dict(time=(0, 1), step=1 / 16, seed=3, paths=6, samples=dict(evenly=3, states=[x, v]))
+path_sweep = my.grid({k: [1.0, 2.0, 4.0], x: [0.5, 1.0]})
+per_set = [*(make(name, over="path") for name in ("x_end", "x_sample") for make in (
+                my.reduce.mean, my.reduce.variance, my.reduce.standard_error, my.reduce.minimum, my.reduce.maximum)),
+           my.reduce.quantiles("x_sample", [0.5], my.linspace(-3, 3, 601), over="path"),
+           my.reduce.histogram("x_end", [-3.0, 0, 3], over="path"),
+           my.reduce.covariance("x_end", "v_end", over=["path"]), my.reduce.covariance("x_sample", "v_sample"),
+           my.reduce.total("positive", "v_end", 1, lambda c: [(c["v_end"] > 0).sum()], over=["path", "k"])]
+
+
+def reduced_paths(store=None, **more):
+    study = my.study(paths_model, path_sweep, start={v: 0}, keep=[x, v], reduce=per_set, **of_paths)
+    return study.run(store, **more)
+
+
+def test_reductions_over_paths_are_those_of_each_set_of_parameters():
+    result = reduced_paths(chunk=36)
+    ends, samples = np.array(result["x_end"]), np.array(result["x_sample"])
+    assert ends.shape == (3, 2, 6) and samples.shape == (3, 2, 6, 3)
+    for name, values in (("x_end", ends), ("x_sample", samples)):
+        several = dict(mean=values.mean(2), variance=values.var(2, ddof=1), minimum=values.min(2),
+                       maximum=values.max(2), standard_error=values.std(2, ddof=1) / 6**0.5)
+        for what, expected in several.items():
+            np.testing.assert_allclose(result[f"{name}_{what}"], expected, rtol=1e-12, atol=1e-15, err_msg=what)
+    inside = np.sort(samples, axis=2)
+    assert result["x_sample_quantiles"].shape == (3, 2, 1, 3)
+    assert (np.abs(result["x_sample_quantiles"][:, :, 0] - inside[:, :, 2]) <= 0.0101).all()
+    assert result["x_end_histogram"].tolist() == [[np.histogram(one, [-3, 0, 3])[0].tolist() for one in row]
+                                                  for row in ends]
+    v_end, v_sample = np.array(result["v_end"]), np.array(result["v_sample"])
+    expected = [[np.cov(a, b)[0, 1] for a, b in zip(*rows)] for rows in zip(ends, v_end)]
+    np.testing.assert_allclose(result["x_end_v_end_covariance"], expected, rtol=1e-12)
+    expected = [np.cov(samples[..., s].ravel(), v_sample[..., s].ravel())[0, 1] for s in (1, 2)]
+    np.testing.assert_allclose(result["x_sample_v_sample_covariance"][1:], expected, rtol=1e-12)
+    assert result["positive"].tolist() == (v_end > 0).sum(axis=(0, 2)).tolist()
+    data = result.to_xarray()
+    assert data.x_sample_quantiles.dims == ("k", "x_start", "x_sample_quantile", "sample")
+    np.testing.assert_allclose(data.x_end_mean, data.x_end.mean("path"), rtol=1e-12)
+
+
+def test_reductions_over_paths_have_the_same_bits_for_other_chunks_and_after_a_stop(tmp_path):
+    names = [name for name in reduced_paths(chunk=36) if name.startswith(("x_", "positive"))]
+    expected = {name: np.array(reduced_paths(chunk=36)[name]) for name in names}
+    assert "x_end_v_end_covariance" in names and "x_sample_quantiles" in names
+
+    calls = []
+
+    def stop_in_the_middle(chunk):
+        calls.append(1)
+        if len(calls) > 12:
+            raise KeyError
+        return per_set[-1].arguments[-1].function(chunk)
+    stops = my.reduce.total("positive", "v_end", 1, stop_in_the_middle, over=["path", "k"])
+    study = my.study(paths_model, path_sweep, start={v: 0}, keep=[x, v], reduce=[*per_set[:-1], stops], **of_paths)
+    with pytest.raises(KeyError):
+        study.run(tmp_path / "store", chunk=1)
+    assert 0 < my.open_study(tmp_path / "store").done < 36
+    for found in (reduced_paths(tmp_path / "store"), reduced_paths(chunk=5), reduced_paths(chunk=1)):
+        for name in names:
+            np.testing.assert_array_equal(found[name], expected[name], err_msg=name)
+
+
+@pytest.mark.parametrize("reduction, said", [
+    (my.reduce.mean("x_end", over="draw"), "is over \"draw\", and the study has no such axis: there are k, path"),
+    (my.reduce.mean("x_end", over=["path", "path"]), "over \"path\" twice: name it once"),
+    (my.reduce.covariance("x_end", "x_sample", over="path"), "of x_end and x_sample, which have different shapes"),
+    (my.reduce.histogram("x_end", my.linspace(0, 1, 1000), over="path"), "sums of reductions"),
+])
+def test_reductions_over_axes_that_cannot_be_are_refused(reduction, said):
+    study = my.study(paths_model, {k: my.linspace(1, 2, 10**9)}, start={x: 1, v: 0}, reduce=reduction,
+                     **of_paths)
+    with pytest.raises(my.Error, match=said):
+        study.run()
+
+
+@pytest.mark.parametrize("over", [[], 3, ["path", 3]])
+def test_axes_of_a_reduction_are_names(over):
+    with pytest.raises(my.Error, match="give the name of an axis of the study"):
+        my.reduce.mean("x_end", over=over)
+
+
 def test_a_study_goes_on_after_an_interrupt_and_after_a_kill(tmp_path):
     stopped, done, complete = run_slowly(tmp_path / "store", signal.SIGINT)
     assert stopped == "stopped" and 0 < int(done) < 4000 and complete == "False"

@@ -70,14 +70,20 @@ chunk_sizes choose_sizes(const studies::any_model& model, const studies::study_p
 }
 
 /// Refuses chunks whose values alone do not fit: they are in memory as a whole, however few instances are integrated at
-/// a time.
+/// a time. So are the sums of reductions, one for each parameter set, of chunks under way; in memory of all chunks.
 void check_memory(double bytes_per_instance, const studies::layout& content, const std::vector<device>& devices,
-                  const host::message_part& advice) {
+                  bool in_memory, const host::message_part& advice) {
     host::memory_need need;
     need.add("values", bytes_per_instance * static_cast<double>(content.chunk));
     const std::int64_t at_once = std::min(2 * static_cast<std::int64_t>(devices.size()), content.chunks());
     need.add("values of other chunks at the same time", need.bytes() * static_cast<double>(at_once - 1));
+    double sums = 0;
+    for (const studies::variable& v : content.variables)
+        if (v.extent == studies::along::chunks) sums += static_cast<double>(v.item_bytes());
     need.check(message("chunks of ", content.chunk, " instances"), advice);
+    need.add("sums of reductions", sums * static_cast<double>(in_memory ? content.chunks() : 2 * at_once));
+    need.check(message("reductions in ", content.chunks(), " chunks"),
+               statement_of("reduce over more axes, or make chunks larger"));
 }
 
 }  // namespace
@@ -224,7 +230,8 @@ any_study::planned_run any_study::plan() const {
     settings.piece = sizes.piece;
     const auto bytes = static_cast<double>(
         kinds_of(*model_, made, settings.devices).on_host ? made.bytes_per_instance() : made.bytes_needed_on_host());
-    check_memory(bytes, made.content, settings.devices, statement_of(host::cures::smaller_chunk, ", or keep less"));
+    check_memory(bytes, made.content, settings.devices, folder_.empty(),
+                 statement_of(host::cures::smaller_chunk, ", or keep less"));
     return {std::move(settings), std::move(made), bytes};
 }
 
@@ -234,7 +241,7 @@ std::unique_ptr<studies::result_keeper> any_study::open_store(const planned_run&
         if (d.which() == device::kind::cpu) options.computed_by = model_->arithmetic_on(d);
     options.model = model_->behaviour(planned.plan, planned.settings.devices);
     auto keeper = studies::keep_in_store(folder_, planned.plan.content, options, chunk_counter);
-    check_memory(planned.host_bytes, keeper->content(), planned.settings.devices,
+    check_memory(planned.host_bytes, keeper->content(), planned.settings.devices, false,
                  statement_of("use fewer devices, or ", host::cures::new_folder));
     return keeper;
 }
@@ -286,7 +293,7 @@ std::optional<studies::computed_chunk> any_study::compute(std::int64_t number, s
     plan.content.chunk = chunk_size;
     require(number >= 0 && number < plan.content.chunks(), "there is no chunk ", number, " in a study of ",
             plan.content.chunks());
-    check_memory(host_bytes, plan.content, settings.devices,
+    check_memory(host_bytes, plan.content, settings.devices, false,
                  statement_of("use fewer devices, or ", host::cures::smaller_chunk));
     studies::one_chunk_keeper keeper(plan.content, number);
     settings.stops = [&] { return stopped_ || keeper.done(); };

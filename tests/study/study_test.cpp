@@ -183,6 +183,50 @@ TEST_CASE("Reductions are those of what is kept", "[study]") {
     CHECK(positive > 0);
     CHECK(positive < 100);
 }
+TEST_CASE("A reduction over an axis is that of each point of the other axes, whatever the chunks", "[study]") {
+    const auto run = [](std::int64_t chunk, const ensemble_reduction& reduction) {
+        study<lorenz, runge_kutta_4, float> s;
+        s.axis("r", values({28, 10}));
+        s.axis("x", linspace(0, 1, 3));
+        s.axis("y", linspace(0.5, 2, 4));
+        s.set("z", 0.25);
+        s.time_domain(0, 1);
+        s.options.step = 0.01;
+        s.keep.end = {"z"};
+        s.devices = {device::cpu(1)};
+        s.chunk = chunk;
+        s.reduce(reduction);
+        return s.run();
+    };
+    const std::vector<std::vector<std::string>> all{{"x_start"}, {"y_start"}, {"r", "y_start"}, {"r", "x_start"}};
+    for (const auto& over : all) {
+        const auto named = [&](const char* name) { return std::find(over.begin(), over.end(), name) != over.end(); };
+        const std::int64_t r_stride = named("r") ? 0 : 1, x_stride = named("x_start") ? 0 : 1,
+                           y_stride = named("y_start") ? 0 : 1;
+        std::vector<double> expected;
+        for (const std::int64_t chunk : {24, 1, 7}) {
+            const study_result found = run(chunk, maximum_of("z_end").over(over));
+            if (expected.empty()) {
+                const auto z = found.values("z_end");
+                const std::int64_t x_length = x_stride == 0 ? 1 : 3, y_length = y_stride == 0 ? 1 : 4;
+                expected.assign(static_cast<std::size_t>((r_stride == 0 ? 1 : 2) * x_length * y_length), -100);
+                for (std::int64_t i = 0; i < 24; ++i) {
+                    const std::int64_t set =
+                        (i / 12 * r_stride * x_length + i / 4 % 3 * x_stride) * y_length + i % 4 * y_stride;
+                    double& most = expected[static_cast<std::size_t>(set)];
+                    most = std::max(most, z[static_cast<std::size_t>(i)]);
+                }
+            }
+            CHECK(found.values("z_end_maximum") == expected);
+        }
+    }
+    CHECK(run(5, mean_of("z_end").over({"r", "y_start", "x_start"})).values("z_end_mean") ==
+          run(24, mean_of("z_end")).values("z_end_mean"));
+    CHECK_THAT(message_of([&] { run(1, mean_of("z_end").over({"path"})); }),
+               Contains("z_end_mean is over \"path\", and the study has no such axis: there are r, x_start, y_start"));
+    CHECK_THAT(message_of([&] { run(1, mean_of("z_end").over({"r", "r"})); }), Contains("over \"r\" twice"));
+    CHECK_THAT(message_of([] { (void)mean_of("z_end").over({}); }), Contains("over no axis: name one"));
+}
 TEST_CASE("Single precision, and instances that fail", "[study]") {
     study<lorenz, runge_kutta_4, float> s;
     s.axis("r", values({28, -1, 20}));

@@ -12,6 +12,7 @@ from ..symbolic.derivatives import dependencies
 from ..symbolic.expression import constant
 from ..symbolic.node import Node, text
 from ..symbolic.numbers import is_whole
+from ..symbolic.types import NotGiven
 from .delays import refuse_method
 from .methods import (adaptive_on_paths, additive_noise, choices_of, default, diagonal_noise, fixed_step, halving,
                       methods, pathless, stiff, stochastic)
@@ -227,9 +228,7 @@ def control_for(model: AnyModel, method: str, control: str | Sequence[str], opti
         return control
     if method not in adaptive_on_paths:
         raise Error(f"{method} takes fixed steps: give step=")
-    defaults = type(options)
-    if all(isinstance(given, float) and given == default for given, default in (
-            (options.rtol, defaults.rtol), (options.atol, defaults.atol))):
+    if isinstance(options.rtol, NotGiven) and isinstance(options.atol, NotGiven):
         raise Error(f"{method} takes fixed steps or adaptive ones: give step=, or rtol= and atol=")
     if control:
         raise Error("adaptive steps along a path are halved and doubled, and have no other control: leave out control=")

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal, TypedDict
 
-from ..symbolic.types import Component, SomeComponents, Tolerance, Values
+from ..symbolic.types import Component, NotGiven, SomeComponents, Tolerance, Values
 
 __all__ = ["EventChoice", "Options", "RecordChoice", "SampleChoice"]
 
@@ -138,8 +138,8 @@ class Options:
     """
 
     phases: int = 1
-    rtol: Tolerance = 1e-8
-    atol: Tolerance = 1e-8
+    rtol: Tolerance = NotGiven(1e-8)
+    atol: Tolerance = NotGiven(1e-8)
     step: float | None = None
     minimum_step: float = 0
     maximum_step: float | None = None

@@ -337,7 +337,8 @@ def study(model: AnyModel, sweep: Sweep | ByComponent | None = None, *, start: B
               records, samples, random values,
               statuses, and the numbers of steps are kept. By default all states, accessories and outputs of a file
               if nothing is recorded, sampled or reduced
-    reduce    reductions over all instances: `my.reduce.mean("x_end")` and others
+    reduce    reductions over all instances, `my.reduce.mean("x_end")` and others, or over some axes,
+              `my.reduce.mean("x_end", over="path")`
     draws     instances for each point of the other axes, as for random values
     paths     so many paths of each of these instances, for a model with noise, along a last axis "path". Each is an
               instance, with random values of its own

@@ -26,6 +26,12 @@ Values = Union[npt.ArrayLike, Any]
 ByComponent = Mapping[Any, Any]
 # One for all states, one for each, or values by state.
 Tolerance = Union[float, Sequence[float], npt.NDArray[np.floating[Any]], Mapping[Any, float]]
+
+
+class NotGiven(float):
+    """A default, which is told from the same number of a call."""
+
+
 # True for a bar, or a function of the numbers of instances done and of all.
 Progress = Union[bool, Callable[[int, int], object], None]
 # Names, as "x v" or in a list, or symbols.

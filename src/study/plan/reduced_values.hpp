@@ -43,4 +43,9 @@ inline variable result(std::string name, element type, std::vector<studies::dime
     return {std::move(name), type, std::move(inner), std::move(attributes), studies::along::nothing};
 }
 
+/// A reduction for each point of the axes that are not named, whose results have these axes in front. Throws `error` if
+/// a named axis is not there, or named twice.
+reduction_plan reduced_over(const studies::reduction_definition& what, const reduction_plan& all,
+                            const std::vector<axes::dimension>& axes);
+
 }  // namespace myriad

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Reductions to one number: extrema, means, sums.
+// Reductions to one number: extrema, means, moments, sums.
 #include "myriad/study/plan/reduction.hpp"
 
 #include <cmath>
@@ -138,6 +138,36 @@ private:
     std::vector<double> count_;
 };
 
+/// The sum of the products of deviations of n pairs from the means, of the sums of the first and of the second numbers
+/// and of their products; NaN of less than two pairs. That from the rounded means a and b is exact,
+/// S12 - a S2 - b S1 + n a b, and rounded once.
+double deviations(const exact_sum& first, const exact_sum& second, const exact_sum& products, double n) {
+    if (n < 2) return std::numeric_limits<double>::quiet_NaN();
+    const auto add_product = [](exact_sum& to, double a, double b) {
+        const double product = a * b;
+        to.add(product);
+        to.add(std::fma(a, b, -product));
+    };
+    exact_sum all = products;
+    const auto subtract = [&](double mean, exact_sum rest) {
+        for (double part = rest.value(); part != 0; part = rest.value()) {
+            add_product(all, -mean, part);
+            rest.add(-part);
+        }
+    };
+    const auto beyond = [&](exact_sum sum, double mean) {  // n times what the mean was rounded by
+        add_product(sum, -n, mean);
+        return sum.value();
+    };
+    const double a = first.value() / n, b = second.value() / n;
+    subtract(a, second);
+    subtract(b, first);
+    const double product = a * b;
+    add_product(all, n, product);
+    add_product(all, n, std::fma(a, b, -product));
+    return all.value() - beyond(first, a) * (beyond(second, b) / n);
+}
+
 /// Sums of numbers and of their squares.
 class moments_state final : public reduction_state {
 public:
@@ -187,43 +217,78 @@ public:
         return all;
     }
     std::vector<std::vector<double>> results() override {
+        constexpr double none = std::numeric_limits<double>::quiet_NaN();
         std::vector<double> found(count_.size());
         for (std::size_t j = 0; j < found.size(); ++j) {
-            const double variance = deviations(j) / (count_[j] - 1);
+            const bool is_known = squared_[j] == count_[j];
+            const double variance =
+                is_known ? std::fmax(deviations(sum_[j], sum_[j], squares_[j], count_[j]), 0) / (count_[j] - 1) : none;
             found[j] = of_mean_ ? std::sqrt(variance / count_[j]) : variance;
         }
         return {found};
     }
 
 private:
-    /// The sum of the squares of deviations from the mean, NaN of less than two numbers. That from the rounded mean m
-    /// is exact, S2 - 2 m S1 + n m^2, and rounded once.
-    double deviations(std::size_t j) {
-        const double n = count_[j];
-        if (n < 2 || squared_[j] != n) return std::numeric_limits<double>::quiet_NaN();
-        const double mean = sum_[j].value() / n;
-        exact_sum all = squares_[j], rest = sum_[j], beyond = sum_[j];
-        const auto add_product = [](exact_sum& to, double a, double b) {
-            const double product = a * b;
-            to.add(product);
-            to.add(std::fma(a, b, -product));
-        };
-        for (double part = rest.value(); part != 0; part = rest.value()) {
-            add_product(all, -2 * mean, part);
-            rest.add(-part);
-        }
-        const detail::exact_square square = detail::square_of(mean);
-        add_product(all, n, square.rounded);
-        add_product(all, n, square.rest);
-        add_product(beyond, -n, mean);
-        const double off = beyond.value();  // n times what the mean was rounded by
-        return std::fmax(all.value() - off * (off / n), 0);
-    }
-
     std::string of_;
     bool of_mean_;
     sums sum_, squares_;
     std::vector<double> count_, squared_;
+};
+
+/// Sums of numbers, of others and of their products.
+class covariance_state final : public reduction_state {
+public:
+    covariance_state(std::string of, std::string other, std::int64_t size)
+        : of_(std::move(of)), other_(std::move(other)), first_(size), second_(size), products_(size),
+          count_(static_cast<std::size_t>(size)), multiplied_(count_) {}
+
+    void add(const chunk_columns& chunk) override {
+        std::vector<double> others;
+        for_each_value(chunk, other_, [&](std::size_t, double value) { others.push_back(value); });
+        std::size_t at = 0;
+        for_each_value(chunk, of_, [&](std::size_t j, double value) {
+            const double other = others[at++];
+            if (!std::isfinite(value) || !std::isfinite(other)) return;
+            first_[j].add(value);
+            second_[j].add(other);
+            ++count_[j];
+            if (!detail::square_of(value).is_known || !detail::square_of(other).is_known) return;
+            const double product = value * other;
+            products_[j].add(product);
+            products_[j].add(std::fma(value, other, -product));
+            ++multiplied_[j];
+        });
+    }
+    void add(std::span<const double> partial) override {
+        const std::size_t n = count_.size(), of_sums = n * sums::stored;
+        first_.add(partial.first(of_sums));
+        second_.add(partial.subspan(of_sums, of_sums));
+        products_.add(partial.subspan(2 * of_sums, of_sums));
+        const auto counts = partial.last(2 * n);
+        for (std::size_t j = 0; j < n; ++j) {
+            count_[j] += counts[j];
+            multiplied_[j] += counts[n + j];
+        }
+    }
+    std::vector<double> partial() override {
+        std::vector<double> all;
+        for (sums* const each : {&first_, &second_, &products_}) each->store(all);
+        all.insert(all.end(), count_.begin(), count_.end());
+        all.insert(all.end(), multiplied_.begin(), multiplied_.end());
+        return all;
+    }
+    std::vector<std::vector<double>> results() override {
+        std::vector<double> found(count_.size(), std::numeric_limits<double>::quiet_NaN());
+        for (std::size_t j = 0; j < found.size(); ++j)
+            if (multiplied_[j] == count_[j])
+                found[j] = deviations(first_[j], second_[j], products_[j], count_[j]) / (count_[j] - 1);
+        return {found};
+    }
+
+private:
+    std::string of_, other_;
+    sums first_, second_, products_;
+    std::vector<double> count_, multiplied_;
 };
 
 using user_function = std::function<void(const chunk_columns&, std::span<double>)>;
@@ -296,6 +361,23 @@ ensemble_reduction variance_of(std::string_view of) {
 ensemble_reduction standard_error_of(std::string_view of) {
     return one_value<moments_state>(of, "standard_error", 2 * (exact_sum::digits + 1), detail::reduction_kind::moments,
                                     true);
+}
+
+ensemble_reduction covariance_of(std::string_view of, std::string_view other) {
+    studies::reduction_definition made;
+    made.name = message(of, '_', other, "_covariance");
+    made.inputs = {std::string(of), std::string(other)};
+    made.description = message("covariance of ", of, " and ", other);
+    made.plan = [name = made.name, names = made.inputs, description = made.description](const inputs& in) {
+        require(in[0]->inner == in[1]->inner, "a covariance is asked for of ", names[0], " and ", names[1],
+                ", which have different shapes: give two last values, or two of the same phases or samples");
+        const std::int64_t size = in[0]->values_per_item();
+        return reduction_plan{size * (3 * exact_sum::digits + 2),
+                              {result(name, element::f64, in[0]->inner, {{"long_name", description}})},
+                              {},
+                              [=] { return std::make_unique<covariance_state>(names[0], names[1], size); }};
+    };
+    return ensemble_reduction(std::move(made));
 }
 
 ensemble_reduction sum_of(std::string name, std::vector<std::string> of, std::int64_t size, user_function function) {

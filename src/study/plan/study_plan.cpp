@@ -9,6 +9,7 @@
 #include "myriad/host/core/error.hpp"
 #include "myriad/host/report/status_names.hpp"
 #include "myriad/study/plan/kinds.hpp"
+#include "reduced_values.hpp"
 
 namespace myriad::studies::inline MYRIAD_ABI {
 
@@ -275,6 +276,7 @@ private:
         std::vector<const variable*> inputs;
         for (const std::string& name : d.inputs) inputs.push_back(&find(name));
         reduction_plan made = d.plan(inputs);
+        if (!d.over.empty()) made = reduced_over(d, made, asked_.axes.dimensions());
         auto& content = plan_.content;
         content.variables.push_back({.name = partial_name(r),
                                      .type = element::f64,

@@ -127,6 +127,20 @@ TEST_CASE("Extrema and means are of each phase, and leave failed instances and N
     CHECK(std::isnan(data.first_of(minimum_of("x"))[0]));
     CHECK(std::isnan(data.first_of(mean_of("x"))[1]));
 }
+TEST_CASE("A covariance of a variable with itself has the bits of its variance", "[reduction]") {
+    std::mt19937_64 random(7);
+    std::normal_distribution<double> normal(1e6, 1e-3);
+    std::vector<double> all(500);
+    for (double& value : all) value = normal(random);
+    const made_up data(all, 2);
+    const auto plan = covariance_of("x", "x").definition().plan({&data.x, &data.x});
+    const auto state = plan.start();
+    const chunk_columns::column columns[] = {{&data.x, std::as_bytes(std::span(data.values))},
+                                             {&data.status, std::as_bytes(std::span(data.statuses))}};
+    state->add(chunk_columns(0, 250, columns));
+    CHECK(static_cast<std::int64_t>(state->partial().size()) == plan.partial_size);
+    CHECK(state->results()[0] == data.first_of(variance_of("x")));
+}
 TEST_CASE("Variances and standard errors are exact where deviations are far below the values", "[reduction]") {
     made_up data({1, 10, 2, not_a_number, 3, 30, -100, 1000}, 2);
     data.fail(3);

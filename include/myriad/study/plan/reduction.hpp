@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Reductions over the instances of a study: histograms, quantiles, an extremum, a mean, or a sum of the user's. Host
-// code only.
+// Reductions over the instances of a study: histograms, quantiles, an extremum, a mean, a covariance, or a sum of the
+// user's. Host code only.
 #pragma once
 
 #include <cstdint>
@@ -54,6 +54,7 @@ struct reduction_definition {
     std::string description;          ///< all that determines its results
     /// For inputs as they turned out to be.
     std::function<reduction_plan(const std::vector<const variable*>& inputs)> plan;
+    std::vector<std::string> over = {};  ///< axes that it reduces; none: all
 };
 
 }  // namespace studies::inline MYRIAD_ABI
@@ -67,6 +68,11 @@ public:
     /// Made by `histogram_of` and its like.
     explicit ensemble_reduction(studies::reduction_definition what)
         : what_(std::make_shared<const studies::reduction_definition>(std::move(what))) {}
+
+    /// The same over the named axes alone, "path" or "k", by names as results have them: one reduction for each point
+    /// of the other axes, along which the results are, in front of their own dimensions. It is not known before the
+    /// study begins whether there are such axes. Throws `error` if none is named.
+    [[nodiscard]] ensemble_reduction over(std::vector<std::string> axes) const;
 
     /// What it is; used by the library.
     const studies::reduction_definition& definition() const { return *what_; }
@@ -102,11 +108,16 @@ private:
 /// The standard error of the mean, for each phase or sample: "x_end_standard_error", the root of the variance over the
 /// number of values.
 [[nodiscard]] ensemble_reduction standard_error_of(std::string_view variable);
+/// The covariance of two variables, for each phase or sample: "x_end_v_end_covariance", the products of deviations from
+/// the means over their number less one, of instances where both are finite; NaN of less than two, or of larger ones
+/// than 1e144. Sums are exact as those of `variance_of`.
+[[nodiscard]] ensemble_reduction covariance_of(std::string_view variable, std::string_view other);
 /// The sum of what a function computes of each chunk of instances: a variable `name` of `size` numbers. The function
 /// adds to `sums`, which are zero at first, and is called by several threads at a time. It sees all instances: those
 /// that failed it leaves out by `chunk.status(i)`, if they are not what it counts. Partial sums are added exactly; what
 /// the function itself rounds depends on the chunks. `name` stands for the function in the study's description:
-/// give another one when it changes. `inputs` are the variables that it asks for.
+/// give another one when it changes. Of a reduction `over` axes it is called for each run of neighbouring instances of
+/// a set. `inputs` are the variables that it asks for.
 [[nodiscard]] ensemble_reduction sum_of(
     std::string name, std::vector<std::string> inputs, std::int64_t size,
     std::function<void(const chunk_columns& chunk, std::span<double> sums)> function);
