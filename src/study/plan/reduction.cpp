@@ -14,15 +14,6 @@
 
 namespace myriad {
 
-const chunk_columns::column& chunk_columns::find(std::string_view name) const {
-    std::string all;
-    for (const column& c : columns_) {
-        if (c.what->name == name) return c;
-        all += (all.empty() ? "" : ", ") + c.what->name;
-    }
-    throw error(message("no variable \"", name, "\" is computed; there are ", all));
-}
-
 namespace {
 
 using studies::exact_sum;
