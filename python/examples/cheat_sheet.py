@@ -68,6 +68,6 @@ run.to_mat("run.mat")                                   # also to_netcdf, to_csv
 
 assert run["x"].shape == (100, 8) and run.report.failed == 0 and np.all(run["peak"] >= run["x_end"])
 assert abs(fit.best["rate"] / 0.4 - 1) < 1e-6 and abs(fit.best["amount"] / 3 - 1) < 1e-6
-assert abs(result["x_end_mean"]) < 1.5 and result["v_end_histogram"].sum() == 1000
+assert (abs(result["x_end_mean"]) < 1.5).all() and result["v_end_histogram"].sum() == 1000
 bounced = my.solve(ball, {r: [0.5, 0.9]}, start={height: 1, speed: 0}, time=(0, 20))
 assert np.array_equal(bounced["bounces"], [5, 5]), bounced.report
