@@ -138,8 +138,7 @@ reduction_plan reduced_over(const studies::reduction_definition& what, const red
     }
     if (kept.empty()) return all;
     require(values < 0x1p53, "the reduction ", what.name,
-            " would have sums of more parameter sets than any memory "
-            "holds: reduce over more axes");
+            " would have sums of more parameter sets than any memory holds: reduce over more axes");
     const instance_sets sets(std::move(kept));
     reduction_plan made = all;
     made.partial_size = sets.count() * all.partial_size;

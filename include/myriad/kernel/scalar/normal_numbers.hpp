@@ -43,7 +43,7 @@ struct random_words<T> {
     }
     /// The word as an integer with a sign, rounded.
     static MYRIAD_FUNCTION float whole(word a) { return static_cast<float>(static_cast<std::int32_t>(a)); }
-    /// The number, with its sign changed if the first bit of the word is set.
+    /// The number, with its sign changed if the highest bit of the word is set.
     static MYRIAD_FUNCTION float with_sign_of(float x, word a) {
         return __builtin_bit_cast(float, __builtin_bit_cast(word, x) ^ (a & sign_bit));
     }
@@ -89,8 +89,8 @@ MYRIAD_FUNCTION B root_of_minus_log(const B& u) {
     return random_words<B>::root(-exponential<B>::log_of_finite(u));
 }
 
-/// The same in single precision from two words, with half of the operations. The first bits of the words choose a
-/// quarter of the plane. In it the angle is pi / 4 + r, with r between -pi / 4 and pi / 4, so that none is reduced:
+/// The same in single precision from two words, with half of the operations. The highest bits of the words choose
+/// a quarter of the plane. In it the angle is pi / 4 + r, with r between -pi / 4 and pi / 4, so that none is reduced:
 /// its cosine is (cos(r) - sin(r)) / sqrt(2), its sine (cos(r) + sin(r)) / sqrt(2).
 template <class B>
 MYRIAD_FUNCTION void box_muller_of_words(const typename random_words<B>::word& of_radius,
